@@ -19,6 +19,8 @@ DESIGNS = DATA / "cut_designs"
 STAR = DATA / "making" / "star_trim4.kiri"
 
 Options = dict[str, Any]
+#: Foil is made of tiles on a hinge layer unless asked for.
+ONE_SHEET: Options = {"construction": "one-sheet"}
 #: Project, and the options that it is exported with.
 CASES: tuple[tuple[str, Options], ...] = (
     ("heart", {}),
@@ -35,7 +37,10 @@ CASES: tuple[tuple[str, Options], ...] = (
     ("hexagon", {"style": "straight", "profile": "slots"}),
     ("hexagon", {"style": "straight", "connector_mm": 1.0, "width_mm": 200.0, "material": "pet-co2"}),
     ("hexagon", {"style": "arc", "material": "card-05-co2", "width_mm": 250.0}),
-    ("hexagon", {"material": "foil-uv", "width_mm": 60.0, "profile": "glowforge", "engrave": True}),
+    (
+        "hexagon",
+        {"material": "foil-uv", "construction": "one-sheet", "width_mm": 60.0, "profile": "glowforge", "engrave": True},
+    ),
     ("hexagon", {"copies": 2, "connector_mm": 0.5, "dxf_version": "R12"}),
     ("house", {"profile": "cricut", "connector_mm": 0.3}),
     ("house", {"style": "straight", "connector_mm": 0.3, "profile": "silhouette"}),

@@ -48,7 +48,7 @@ from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.foundation.errors import ExportError, KirigamiError, ProjectError, RatioError
+from kirigami_studio.foundation.errors import ExportError, KirigamiError, ProjectError, RatioError, UsageError
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.lattice import sheet as lattice_sheet
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
@@ -399,6 +399,8 @@ class Design:
     ) -> Cuts:
         """Plan the cuts in a material; what is left out is as the project has it.
 
+        With ``construction="backed"`` they are those of the hinge layer; its tiles are exported with it.
+
         Parameters
         ----------
         hinge_mm : mapping of int to float
@@ -455,6 +457,8 @@ class Design:
         if "construction" not in wanted and not is_pinned(settings):
             settings = replace(settings, construction=Construction.PINNED)
         request = CutRequest.of(document, settings)
+        if not request.is_pinned:
+            raise UsageError("api.no_pieces_on_pins", construction=wanted["construction"])
         return Pieces(self, request, pieces_of(request))
 
     def simulate(self, **cuts: Any) -> Simulation:
@@ -467,7 +471,7 @@ class Design:
         Parameters
         ----------
         path : path
-            ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for two layers on pins in a folder of this name;
+            ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for designs in layers in a folder of this name;
             ``.stl``, ``.3mf`` or ``.obj``: solids, on printed pins in a folder of this name; ``.png``: the closed
             sheet; ``.gif``: its motion; ``.html``: a page to share.
 
@@ -648,8 +652,13 @@ class Cuts:
 
     @property
     def seconds(self) -> float:
-        """Estimated time of cutting one sheet."""
-        return self.plan.seconds_estimate
+        """Estimated time of cutting one sheet, with its tiles if it is backed."""
+        return self.plan.seconds_estimate if self._planned.layers is None else self._planned.seconds
+
+    @property
+    def tiles(self) -> int:
+        """Tiles that are glued on it; 0 unless it is backed."""
+        return 0 if self._planned.layers is None else len(self._planned.layers.assembly.pieces)
 
     @property
     def pieces(self) -> int:

@@ -8,8 +8,8 @@ board is left out: there the hinge layer has to bend, over the flexure length of
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
@@ -20,56 +20,27 @@ from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.fabricate.cut_panels import cut_panels
 from kirigami_studio.fabricate.cut_path import check_length
 from kirigami_studio.fabricate.cut_plan import CutPlan
-from kirigami_studio.fabricate.finished_sheet import BLADE_MM
+from kirigami_studio.fabricate.options import BoardCut
 from kirigami_studio.fabricate.slits import cut_table
-from kirigami_studio.fabricate.strain import ROUNDING_MM, RigidPanels
+from kirigami_studio.fabricate.strain import RigidPanels
+from kirigami_studio.fabricate.tiles import GAP_MM
+from kirigami_studio.fabricate.tiles import TileSizes as TileSizes
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
 
-GAP_MM = 1.0
 #: Width (mm) of the frame round the tiles, and diameter of its registration holes.
 FRAME_MM, REGISTRATION_MM = 15.0, 3.0
 #: Name of the frame among the pieces of the board.
 FRAME = "FRAME"
 #: A tile in which no disc of this diameter (mm) has room is left out: nobody can glue it.
 LEAST_TILE_MM = 1.0
+#: Parts smaller than this share of an eroded tile are its corners; necks are left out with some room.
+CORNER_SHARE, SAFE = 0.02, 1.02
 #: Segments of a quarter of a relief disc, and how well the middle of a tile is found (mm).
 DISC_SEGMENTS, LABEL_MM = 16, 0.05
 #: A number takes this share of the diameter of the largest disc in its tile, and no more than so many mm.
 LABEL_SHARE, LARGEST_LABEL_MM = 0.5, 5.0
-
-
-@dataclass(frozen=True, slots=True)
-class TileSizes:
-    """Sizes that decide on the tiles.
-
-    Raises
-    ------
-    FabricationError
-        A length below 0.
-    """
-
-    gap_mm: float = GAP_MM  #: how much smaller than their finished panels tiles are, all round
-    relief_mm: float | None = None  #: radius free of tiles round connectors; None for the length they bend over
-
-    def __post_init__(self) -> None:
-        check_length("backed.gap_negative", self.gap_mm, zero_allowed=True)
-        if self.relief_mm is not None:
-            check_length("backed.relief_negative", self.relief_mm, zero_allowed=True)
-
-    def radii(self, plan: CutPlan) -> FloatArray:
-        """Radius (H,), mm, that is left free round each connector of a plan; 0 where it has none."""
-        there = ~plan.hinges.removed & (plan.hinges.finished_mm > 0.0)
-        radii: FloatArray = np.where(there, plan.hinges.flexure_mm if self.relief_mm is None else self.relief_mm, 0.0)
-        return radii
-
-
-class BoardCut(StrEnum):
-    """How tiles are cut; the values stand on the command line and in files."""
-
-    KISS = "kiss"  #: through the board, not its liner: tiles stay in place, what is between them is weeded
-    THROUGH = "through"  #: all through: tape over the board keeps tiles in place
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +71,13 @@ class Board:
     pieces: tuple[Piece, ...]  #: tiles, then the frame, each in its own frame of coordinates
     places: FloatArray  #: (P, 2) where their origins lie; the lower left corner of the frame is (0, 0)
     layer_at: FloatArray  #: (2,) where the origin of the hinge layer's plan lies
-    kissed: frozenset[str]  #: ids of pieces that are not cut through; with them the opening of the frame
+    kissed: frozenset[str]  #: ids of pieces that are not cut through
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        """Width and height of the frame."""
+        width, height = self.pieces[-1].outline.max(axis=0).tolist()
+        return width, height
 
     @property
     def registration(self) -> tuple[RoundHole, ...]:
@@ -143,14 +120,17 @@ class BackedSheet:
         columns = self.deployment.topology.columns + 1
         panels = cut_panels(self.plan).outlines
         centres = self.plan.hinges.position if self.plan.centres is None else self.plan.centres
-        radii = self.tile_sizes.radii(self.plan)
+        radii = self.tile_sizes.radii(self.plan.hinges)
         discs = shapely.buffer(shapely.points(centres[radii > 0.0]), radii[radii > 0.0], quad_segs=DISC_SEGMENTS)
         free = shapely.union_all(discs)
-        inset_mm = self.tile_sizes.gap_mm + 0.5 * max(self.plan.kerf_mm, BLADE_MM)
+        inset_mm = self.tile_sizes.inset_mm(self.plan.kerf_mm)
         found = {}
         for number, ring in zip(panels.panel.tolist(), panels.split(panels.points), strict=True):
-            inset = shapely.buffer(Polygon(ring), -inset_mm, join_style="mitre")
+            # Bows reach beyond the lattice's own panel, which passes all others; its tile does not.
+            both = [shapely.make_valid(Polygon(points)) for points in (ring, self.plan.panels[number])]
+            inset = shapely.intersection(*shapely.buffer(both, -inset_mm, join_style="mitre"))
             largest = max(shapely.get_parts(shapely.difference(inset, free)), key=shapely.area, default=Polygon())
+            largest = without_necks(largest, self.tile_sizes.least_mm)
             if not largest.is_empty and _room(largest)[1] >= 0.5 * LEAST_TILE_MM:
                 found[divmod(number, columns)] = Polygon(largest.exterior)
         return found
@@ -172,18 +152,18 @@ class BackedSheet:
         return Assembly(self.deployment, self.cell_mm, self.phi_target, tuple(pieces), ())
 
     def rigid_panels(self, phi: float, flexure_mm: FloatArray | None = None) -> RigidPanels:
-        """Free lengths of all connectors between tiles, for the strain of the hinge layer.
+        """Free lengths of all connectors between tiles, see :meth:`TileSizes.rigid_panels`."""
+        return self.tile_sizes.rigid_panels(self.plan.hinges, self.plan.kerf_mm, phi, flexure_mm)
 
-        Parameters
-        ----------
-        phi : float, radians
-        flexure_mm : (H,) float, optional
-            Over which strains were found that tiles are to make larger; those of the plan unless given.
-        """
-        length = self.plan.hinges.flexure_mm if flexure_mm is None else flexure_mm
-        gap = self.tile_sizes.gap_mm + 0.5 * max(self.plan.kerf_mm, BLADE_MM)
-        free = 2.0 * np.maximum(self.tile_sizes.radii(self.plan), gap)
-        return RigidPanels(free, np.maximum(length, ROUNDING_MM), math.pi - phi)
+    def jig(self, cut: BoardCut, beds: Sequence[tuple[float, float]]) -> Jig:
+        """The widest frame, up to the usual one, that beds (width, height; mm, 0 for any) have room for."""
+        size = np.ptp(self.plan.outline, axis=0) + 2.0 * max(self.tile_sizes.gap_mm, GAP_MM)
+        room = [
+            max(0.5 * min(across - size[0], along - size[1]) for across, along in (bed, bed[::-1]))
+            for bed in beds
+            if min(bed) > 0.0
+        ]
+        return Jig(cut, float(np.clip(min(room, default=FRAME_MM), 2.0 * REGISTRATION_MM, FRAME_MM)))
 
     def board(self, jig: Jig) -> Board:
         """Lay tiles into a frame with registration holes.
@@ -226,6 +206,26 @@ class BackedSheet:
         panels = cut_panels(self.plan).outlines
         whole = sum(Polygon(ring).area for ring in panels.split(panels.points))
         return sum(tile.area for tile in self.flat_tiles.values()) / whole
+
+
+def core(tile: Polygon, width_mm: float) -> tuple[Polygon, bool]:
+    """What half a width off the edge of a tile is left of it, and whether that is all in one part, but for corners."""
+    parts = shapely.get_parts(shapely.buffer(tile, -0.5 * width_mm))
+    areas = shapely.area(parts)
+    if not len(parts):
+        return Polygon(), False
+    return parts[int(np.argmax(areas))], int(np.sum(areas > CORNER_SHARE * areas.sum())) == 1
+
+
+def without_necks(tile: Polygon, width_mm: float) -> Polygon:
+    """The largest part of a tile that is nowhere narrower than a width, mm; the tile itself where all of it is so."""
+    if width_mm <= 0.0 or tile.is_empty:
+        return tile
+    wide, whole = core(tile, SAFE * width_mm)
+    if whole:
+        return tile
+    opened = shapely.intersection(tile, shapely.buffer(wide, 0.5 * SAFE * width_mm, quad_segs=DISC_SEGMENTS))
+    return max((part for part in shapely.get_parts(opened)), key=shapely.area, default=Polygon())
 
 
 def _room(tile: Polygon) -> tuple[FloatArray, float]:

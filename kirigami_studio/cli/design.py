@@ -47,8 +47,8 @@ from kirigami_studio.settings.fabrication import (
     is_printed,
     machine_for,
     named_machine,
-    note_before_run,
 )
+from kirigami_studio.settings.layers import note_before_run
 from kirigami_studio.studio.as_cut import AsCut, jam_json
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
 from kirigami_studio.studio.making import (
@@ -377,22 +377,22 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
     listing = {"candidates": candidates_json(design.result, construction_for(request.settings))}
     write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
     made, refusal = None, ""
-    if request.is_pinned:
-        _write_pictures(request, None, paths)
-        paths["cut"] = folder / ("print" if is_printed(request.settings) else "cut")
-        try:
-            verdict = written_pieces(request, Output(paths["cut"], "cut")).verdict
-        except (ExportError, UsageError, FabricationError) as error:
-            raise FabricationError("design.not_cut", project=paths["project"], reason=str(error)) from error
-        assert verdict is not None  # pieces are judged
-        return replace(design, verdict=verdict), {role: str(path) for role, path in paths.items()}
     try:
-        made = planned(request)
+        made = None if request.is_pinned else planned(request)
     except FabricationError as error:
         refusal = str(error)
     _write_pictures(request, made, paths)
-    if made is None:
+    if refusal:
         raise FabricationError("design.not_cut", project=paths["project"], reason=refusal)
+    if made is None or made.layers is not None:
+        paths["cut"] = folder / ("print" if is_printed(request.settings) else "cut")
+        output = Output(paths["cut"], "cut")
+        try:
+            found = written_pieces(request, output) if made is None else written(request, made, output, request.as_cut)
+        except (ExportError, UsageError, FabricationError) as error:
+            raise FabricationError("design.not_cut", project=paths["project"], reason=str(error)) from error
+        assert found.verdict is not None  # layers are judged
+        return replace(design, verdict=found.verdict), {role: str(path) for role, path in paths.items()}
     machine, verdicts = named_machine(request.settings), []
     if machine is None and machine_for(request.settings).kind is MachineKind.PRINTER:
         machine = machine_for(request.settings)

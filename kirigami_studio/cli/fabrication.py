@@ -7,7 +7,7 @@ import math
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.option_types import check_name
@@ -31,9 +31,9 @@ from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     is_pinned,
     new_settings,
-    note_before_run,
     with_choices,
 )
+from kirigami_studio.settings.layers import is_backed, note_before_run
 from kirigami_studio.studio.as_cut import Source, jam_json, simulated
 from kirigami_studio.studio.checking import Checked, checked_together
 from kirigami_studio.studio.cutting import check_connectors
@@ -48,11 +48,14 @@ from kirigami_studio.studio.making import (
     fixing,
     picture_job,
     planned,
-    writes_pieces,
+    writes_layers,
     written,
     written_pieces,
 )
 from kirigami_studio.studio.verdict import Verdict, refused
+
+if TYPE_CHECKING:
+    from kirigami_studio.export.assembly_files import AssemblyJob
 
 #: Angle of the flat sheet.
 FLAT_DEG = 180.0
@@ -66,7 +69,8 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     settings = new_settings(_given(arguments))
     note = note_before_run(settings)
     if note is not None:
-        said = tr("note: {text}", text=note.text) if is_pinned(settings) else f"{tr('warning')}: {note.text}"
+        in_layers = is_pinned(settings) or is_backed(settings)
+        said = tr("note: {text}", text=note.text) if in_layers else f"{tr('warning')}: {note.text}"
         sys.stderr.write(f"kirigami-studio: {said}\n")
     return settings
 
@@ -83,7 +87,7 @@ def export(arguments: argparse.Namespace) -> int:
     request = CutRequest.of(document, settings)
     output = Output(Path(arguments.out), "cut" if arguments.all else None, _wants_record(arguments))
     angle = None if arguments.at_deg is None else math.radians(arguments.at_deg)
-    if not arguments.all and not (request.is_pinned and writes_pieces(output)):
+    if not arguments.all and not writes_layers(request, output):
         find_writer(arguments.out)
     if request.is_pinned:
         found = written_pieces(request, output, angle)
@@ -107,7 +111,7 @@ def export(arguments: argparse.Namespace) -> int:
     verdict = found.verdict
     assert verdict is not None  # planned sheets are judged
     advice = _advice(request, verdict) if arguments.fixes and not verdict.ok else None
-    work = _work(plan, settings.profile, output)
+    work = _work(plan, settings.profile, output) if made.layers is None or made.work is None else made.work
     notes = [*plan.notes, *report.problems, *(note for one in found.verifications for note in one.warnings)]
     if output.has_pdf:
         notes += page_notes(plan.copies.spread_mm, settings.paper)
@@ -131,6 +135,7 @@ def export(arguments: argparse.Namespace) -> int:
                 "travel_mm": work.travel_mm,
                 "seconds_estimate": work.times.total,
                 "pieces": report.pieces * len(plan.copies),
+                **({} if made.layers is None else tiles_json(made.layers)),
                 **({} if len(plan.copies) == 1 else {"copies": len(plan.copies)}),
                 "min_connector_mm": plan.min_connector_mm,
                 **({} if plan.engraving is None else {"engraved": engraved_json(plan.engraving)}),
@@ -161,6 +166,16 @@ def export(arguments: argparse.Namespace) -> int:
             connector=plan.min_connector_mm,
         )
     )
+    if made.layers is not None:
+        say(
+            "  "
+            + tr(
+                "{tiles} tiles of {board}, glued on {hinge}",
+                tiles=len(made.layers.assembly.pieces),
+                board=made.layers.material.name,
+                hinge=plan.material.name,
+            )
+        )
     for one in found.verifications:
         if one.ok:
             say("  " + tr("{path}: verified by two readers", path=one.path))
@@ -280,6 +295,18 @@ def _work(plan: CutPlan, profile: str, output: Output) -> Work:
     if output.name is not None or suffix in FORMATS:
         return work_of(strokes_of(plan, find_profile(profile)), plan)
     return Work(plan.cut_length_mm, plan.travel_mm, plan.times)
+
+
+def tiles_json(layers: AssemblyJob) -> dict[str, object]:
+    """What a backed design is made of."""
+    assert layers.glued is not None  # backed designs are
+    return {
+        "construction": layers.construction.value,
+        "hinge_layer": layers.glued.plan.material.key,
+        "board": layers.material.key,
+        "tiles": len(layers.assembly.pieces),
+        "glue_mm2": layers.glued.glue_mm2,
+    }
 
 
 def _summary(found: Verification) -> dict[str, object]:

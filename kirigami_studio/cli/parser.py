@@ -52,7 +52,9 @@ JSON = option("--json", action="store_true", help="print JSON on standard output
 USUAL = FabricationSettings()
 WIDTHS = setting_options(FabricationSettings, "width_mm", "material", "connector_mm", "kerf_mm", "machine", over=USUAL)
 CONSTRUCTION = setting_options(
-    FabricationSettings, "construction", "fastener", "pin_mm", "ear_mm", "clearance_mm", "gap_mm", over=USUAL
+    FabricationSettings,
+    *("construction", "fastener", "pin_mm", "ear_mm", "clearance_mm", "gap_mm", "second_material", "board_cut"),
+    over=USUAL,
 )
 PROFILE, PAPER = setting_options(FabricationSettings, "profile", "paper", over=USUAL)
 SINGLE_CONNECTORS = (

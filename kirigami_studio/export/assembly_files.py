@@ -28,7 +28,8 @@ from kirigami_studio.assembly.driving import DriveParts
 from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
-from kirigami_studio.export.cut_bed import CutBed, laid_on_beds
+from kirigami_studio.export.backed_files import HINGE_LAYER, Glued
+from kirigami_studio.export.cut_bed import CutBed, board_bed, laid_on_beds
 from kirigami_studio.export.drive_files import drive_lines
 from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.file_content import FileContent
@@ -38,18 +39,26 @@ from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.pieces_read import FoundPiece, KnownOutlines, found_pieces, motion_findings
-from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, find_profile
+from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, Profile, find_profile
 from kirigami_studio.export.provenance import PROGRAM, VERDICT, exactly, origin_facts
 from kirigami_studio.export.strokes import Stroke, Work, cutting_work, extent
 from kirigami_studio.export.svg import strokes_svg, write_svg
-from kirigami_studio.export.verification import FORMATS, Finding, Format, Verification, agreed, reader_findings
-from kirigami_studio.fabricate.cut_plan import design_hash
+from kirigami_studio.export.verification import (
+    FORMATS,
+    Finding,
+    Format,
+    Verification,
+    agreed,
+    reader_findings,
+    sheet_findings,
+)
+from kirigami_studio.fabricate.cut_plan import Layer, design_hash
 from kirigami_studio.fabricate.fastener import SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.hold import HoldOptions
 from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Construction, Material
-from kirigami_studio.fabricate.options import CutOrder
+from kirigami_studio.fabricate.options import BoardCut, CutOrder
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
@@ -112,6 +121,8 @@ class AssemblyJob:
         Board and arms that move it.
     width_mm : float
         Of the flat sheet; 0 where that is not known.
+    glued : Glued or None
+        The hinge layer that the pieces are glued on, in the place of pins.
     """
 
     assembly: Assembly
@@ -137,6 +148,7 @@ class AssemblyJob:
     holds: tuple[HoldPlace, ...] = ()
     drive: DriveParts | None = None
     width_mm: float = 0.0
+    glued: Glued | None = None
 
     @property
     def whole(self) -> Assembly:
@@ -152,6 +164,8 @@ class AssemblyJob:
         FabricationError
             A hole or an opening that is narrower than the kerf.
         """
+        if (glued := self.glued) is not None:
+            return (board_bed(glued.board, self.allowed_mm, glued.cut is BoardCut.KISS, self.order),)
         return laid_on_beds(self.whole.pieces, self.allowed_mm, self.machine.reach_mm, self.margin_mm, self.order)
 
     @property
@@ -170,7 +184,9 @@ class AssemblyJob:
             if count > 1
         ]
         note = find_profile(self.profile).note
-        return (*several, *([] if note is None else [note]))
+        kiss = self.glued is not None and self.glued.cut is BoardCut.KISS
+        kissed = [Note.of("backed.kiss_cut", layer=find_profile(self.profile).layer_name(Layer.KISS))] if kiss else []
+        return (*several, *kissed, *([] if note is None else [note]))
 
     @cached_property
     def works(self) -> tuple[Work, ...]:
@@ -180,6 +196,16 @@ class AssemblyJob:
             for bed in self.beds
         ]
         return tuple(cutting_work(strokes, self.material, self.machine) for strokes in cuts)
+
+    @cached_property
+    def hinge_work(self) -> Work | None:
+        """The same of the hinge layer under tiles."""
+        return None if self.glued is None else self.glued.work(find_profile(self.profile))
+
+    @property
+    def all_works(self) -> tuple[Work, ...]:
+        """Of all files."""
+        return self.works if self.hinge_work is None else (self.hinge_work, *self.works)
 
     @property
     def fastener_length_mm(self) -> float:
@@ -247,17 +273,22 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
     """Write all files into a new folder and read them back."""
     verified: list[Verification] = []
     by_kind: dict[str, dict[str, FoundPiece]] = {}
-    known = KnownOutlines()
+    moving, known = job.whole.by_id, KnownOutlines()
     for kind in kinds:
+        if job.glued is not None:
+            verified.append(_hinge_layer_written(job, job.glued, fresh, home, kind))
         for bed in job.beds:
             found, pieces = _bed_written(job, bed, fresh, home, kind, known)
             verified.append(found)
-            by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces})
+            by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces if piece.id in moving})
     record = pieces_json(job.whole, holds=job.holds)
     write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
     verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
     sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
+    if (glued := job.glued) is not None:
+        template = board_bed(glued.board, 0.0)
+        sheet = replace(sheet, steps=glued.steps, legend={2: "tiles"}, template=template, under=glued.under)
     write_assembly_pdf(sheet, fresh / SHEET, job.paper)
     for one in verified:
         for finding in one.findings:
@@ -285,7 +316,7 @@ def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[
         "PIN_MM": exactly(job.hole_mm),
         "EAR_MM": exactly(job.ear_mm),
         "CLEARANCE_MM": exactly(job.clearance_mm),
-        "FASTENER": job.fastener.value,
+        **({"FASTENER": job.fastener.value} if job.glued is None else {"HINGE_LAYER": job.glued.plan.material.key}),
         "KERF_MM": exactly(job.allowed_mm),
         "ORDER": job.order.value,
         "PROFILE": profile.key,
@@ -308,24 +339,9 @@ def _bed_written(
     profile = find_profile(PROJECT_PROFILE if kind == ".lbrn2" else job.profile)
     strokes = bed.strokes(profile)
     facts = bed_facts(job, bed, strokes)
-    record = job.record if (bed.layer, bed.number) == (1, 1) else b""
-    path, how = fresh / f"{bed.name}{kind}", PROJECT if kind == ".lbrn2" else FORMATS[kind]
-    if kind == ".lbrn2":
-        write_project(strokes_lightburn(strokes, job.material, job.machine, facts), strokes, path)
-    elif kind == ".svg":
-        title = f"Kirigami pieces, layer {bed.layer}, bed {bed.number}"
-        write_svg(strokes_svg(strokes, title, facts, profile.svg_dpi, record), path, len(strokes), extent(strokes))
-    elif profile.file_per_layer:
-        path = fresh / bed.name
-        path.mkdir()
-        fill_layer_folder(path, strokes, job.dxf_version, facts, record)
-        strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
-    else:
-        content = strokes_dxf(strokes, extent(strokes), job.dxf_version, facts, record=record)
-        write_atomically(path, content, lambda one: check_written(one, strokes, extent(strokes), job.dxf_version))
-    contents = [_content(read, path) for read in how.readers]
-    version = "R2010" if kind != ".dxf" else job.dxf_version
-    found = agreed(contents, [reader_findings(content, strokes, version, how) for content in contents])
+    record = job.record if bed is job.beds[0] and job.glued is None else b""
+    cut = job.material, job.machine
+    path, contents, found = _strokes_written(job, bed.name, kind, strokes, profile, facts, record, cut, fresh)
     return _bed_verified(job, bed, home / path.name, contents, known, found)
 
 
@@ -379,6 +395,62 @@ def _bed_verified(
         warnings=job.notes,
     )
     return verification, of_pieces[-1][1]
+
+
+def _strokes_written(
+    job: AssemblyJob,
+    name: str,
+    kind: str,
+    strokes: Sequence[Stroke],
+    profile: Profile,
+    facts: dict[str, str],
+    record: bytes,
+    cut: tuple[Material, Machine],
+    fresh: Path,
+) -> tuple[Path, list[FileContent], list[Finding]]:
+    """Write a file, or a folder of layers, and read it twice; return where, its contents, and how they compare."""
+    path, how = fresh / f"{name}{kind}", PROJECT if kind == ".lbrn2" else FORMATS[kind]
+    if kind == ".lbrn2":
+        write_project(strokes_lightburn(strokes, *cut, facts), strokes, path)
+    elif kind == ".svg":
+        title = f"Kirigami pieces, layer {facts['LAYER']}, bed {facts['BED'].partition(' ')[0]}"
+        write_svg(strokes_svg(strokes, title, facts, profile.svg_dpi, record), path, len(strokes), extent(strokes))
+    elif profile.file_per_layer:
+        path = fresh / name
+        path.mkdir()
+        fill_layer_folder(path, strokes, job.dxf_version, facts, record)
+        strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
+    else:
+        content = strokes_dxf(strokes, extent(strokes), job.dxf_version, facts, record=record)
+        write_atomically(path, content, lambda one: check_written(one, strokes, extent(strokes), job.dxf_version))
+    contents = [_content(read, path) for read in how.readers]
+    version = "R2010" if kind != ".dxf" else job.dxf_version
+    return path, contents, agreed(contents, [reader_findings(one, strokes, version, how) for one in contents])
+
+
+def _hinge_layer_written(job: AssemblyJob, glued: Glued, fresh: Path, home: Path, kind: str) -> Verification:
+    """Write the hinge layer with its registration holes, and judge the sheet that is found in its file."""
+    # Projects have arcs by other curves, which their readers do not take for arcs.
+    profile = replace(find_profile(PROJECT_PROFILE), flatten=True) if kind == ".lbrn2" else find_profile(job.profile)
+    strokes = glued.strokes(profile)
+    facts = glued.facts(profile, strokes) | origin_facts(job.provenance)
+    facts |= {VERDICT: job.verdict} if job.verdict else {}
+    cut = glued.plan.material, glued.plan.machine
+    path, contents, found = _strokes_written(job, HINGE_LAYER, kind, strokes, profile, facts, job.record, cut, fresh)
+    sheets = [glued.sheet_in(content.strokes, profile) for content in contents]
+    found += agreed(contents, [sheet_findings(sheet, glued.plan, profile) for sheet in sheets])
+    work = glued.work(profile)
+    return Verification(
+        path=home / path.name,
+        ok=all(finding.ok for finding in found),
+        size_mm=extent(contents[-1].strokes),
+        pieces=1,
+        cut_length_mm=work.cut_length_mm,
+        seconds_low=work.times.low,
+        seconds_high=work.times.high,
+        findings=tuple(found),
+        warnings=glued.plan.notes,
+    )
 
 
 def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
@@ -458,9 +530,9 @@ def _motion_verified(
         ok=all(finding.ok for finding in findings),
         size_mm=(width, height),
         pieces=len(job.whole.pieces),
-        cut_length_mm=sum(work.cut_length_mm for work in job.works),
-        seconds_low=sum(work.times.low for work in job.works),
-        seconds_high=sum(work.times.high for work in job.works),
+        cut_length_mm=sum(work.cut_length_mm for work in job.all_works),
+        seconds_low=sum(work.times.low for work in job.all_works),
+        seconds_high=sum(work.times.high for work in job.all_works),
         findings=tuple(findings),
         warnings=(),
     )
@@ -525,12 +597,14 @@ ITEMS = {
     "screws": mark("screws"),
     "square bar": mark("square bar"),
     "servo": mark("servo"),
+    "hinge layer": mark("hinge layer"),
+    "glue": mark("glue"),
 }
 
 
 def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
-    """The parts list: pieces of each bed, pins, parts that hold, material, and all together."""
-    found = []
+    """The parts list: pieces of each bed, pins or glue, parts that hold, materials, and all together."""
+    found = _hinge_layer_parts(job)
     for bed, work in zip(job.beds, job.works, strict=True):
         area = sum(_area(cuts.piece) for cuts in bed.pieces)
         ids = " ".join(cuts.piece.id for cuts in bed.pieces)
@@ -563,26 +637,38 @@ def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
             *drive_lines(job.drive, job.material.thickness_mm, job.hole_mm, SIZES[job.fastener]),
         )
     ]
-    sheet = tr("{material}; area of the rectangles round what is cut", material=tr(job.material.name))
-    found.append(
-        PartLine(
-            "material",
-            count=len(job.beds),
-            note=sheet,
-            area_mm2=sum(bed.size_mm[0] * bed.size_mm[1] for bed in job.beds),
-        )
-    )
+    if job.glued is not None:
+        found.append(PartLine("glue", area_mm2=job.glued.glue_mm2, note=tr("area of the tiles, one side")))
+    found.append(_material_part(job.material, [bed.size_mm for bed in job.beds]))
     found.append(
         PartLine(
             "all cuts",
             count=len(job.whole.pieces),
             area_mm2=sum(map(_area, job.whole.pieces)),
-            cut_mm=sum(work.cut_length_mm for work in job.works),
-            seconds=sum(work.times.total for work in job.works),
+            cut_mm=sum(work.cut_length_mm for work in job.all_works),
+            seconds=sum(work.times.total for work in job.all_works),
             note=tr("on {machine}", machine=tr(job.machine.name)),
         )
     )
     return tuple(found)
+
+
+def _hinge_layer_parts(job: AssemblyJob) -> list[PartLine]:
+    """The sheet that tiles are glued on, and its material."""
+    if job.glued is None or job.hinge_work is None:
+        return []
+    plan, work = job.glued.plan, job.hinge_work
+    area = float(shapely.area(Polygon(plan.outline)))
+    line = PartLine("hinge layer", 1, 1, HINGE_LAYER, 1, area_mm2=area, cut_mm=work.cut_length_mm)
+    return [
+        replace(line, seconds=work.times.total, note=tr("on {machine}", machine=tr(plan.machine.name))),
+        _material_part(plan.material, [job.glued.board.size_mm]),
+    ]
+
+
+def _material_part(material: Material, sizes: Sequence[tuple[float, float]]) -> PartLine:
+    note = tr("{material}; area of the rectangles round what is cut", material=tr(material.name))
+    return PartLine("material", count=len(sizes), note=note, area_mm2=sum(width * height for width, height in sizes))
 
 
 def _area(piece: Piece) -> float:
@@ -597,7 +683,7 @@ def parts_csv(job: AssemblyJob) -> str:
     table = csv.writer(text, lineterminator="\r\n")
     table.writerow([tr(heading) for heading in HEADINGS.values()])
     for part in parts(job):
-        named = replace(part, item=tr(ITEMS[part.item]))
+        named = replace(part, item=tr(ITEMS.get(part.item, part.item)))
         table.writerow([_cell(getattr(named, column)) for column in HEADINGS])
     return text.getvalue()
 
@@ -639,6 +725,10 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
                 material=tr(job.material.name),
                 area=(part.area_mm2 or 0.0) / 100.0,
             )
+        elif part.item == "hinge layer":
+            one = f"{part.file}: {tr(part.item)}, {_cell(part.cut_mm)} mm, {_minutes(part.seconds)}"
+        elif part.item == "glue":
+            one = f"{tr(part.item)}: {(part.area_mm2 or 0.0) / 100.0:.0f} cm2"
         elif part.item != "all cuts":
             size = " x ".join(_cell(one) for one in (part.diameter_mm, part.length_mm) if one is not None)
             one = f"{part.count} {tr(ITEMS[part.item])}{f', {size} mm' if size else ''}, {part.note}"

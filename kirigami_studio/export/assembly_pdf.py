@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -109,6 +109,10 @@ class AssemblySheet:
         Words on the layers.
     pins_are_put_in : bool
         Whether pins are listed in their order.
+    template : CutBed or None
+        Frame and tiles that are shown at true size in the place of the flat sheet.
+    under : (L, 2) float, mm
+        Outline of the hinge layer there.
     """
 
     assembly: Assembly
@@ -121,6 +125,8 @@ class AssemblySheet:
     steps: Sequence[str] = STEPS
     legend: Mapping[int, str] = field(default_factory=lambda: LEGEND)
     pins_are_put_in: bool = True
+    template: CutBed | None = None
+    under: FloatArray | None = None
 
 
 def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE) -> None:
@@ -141,7 +147,8 @@ def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE
     upright = find_paper(paper) or PAPERS[Paper.A4]
     assert upright is not None
     flat = _Drawing.of(sheet.assembly, math.pi)
-    tiling = _one_page(flat.size) if find_paper(paper) is None else tile(flat.size, paper)
+    full = flat if sheet.template is None else _Drawing.of_bed(sheet.template, sheet.under)
+    tiling = _one_page(full.size) if find_paper(paper) is None else tile(full.size, paper)
     stream = BytesIO()
     make_canvas: Any = Canvas
     canvas = make_canvas(stream, pagesize=tuple(side * mm for side in upright), invariant=1, pageCompression=0)
@@ -155,17 +162,17 @@ def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE
         _page_of_drive(canvas, sheet.drive, upright)
         before += 1
     canvas.setPageSize(tuple(side * mm for side in tiling.page))
-    width, height = flat.size
+    width, height = full.size
     about = tr(
         "{title}, flat, at true size: {width:.1f} x {height:.1f} mm",
         title=sheet.about["title"],
         width=width,
         height=height,
     )
-    draw_pages(canvas, tiling, flat.size, about, lambda part: _draw_part(canvas, flat, part))
+    draw_pages(canvas, tiling, full.size, about, lambda part: _draw_part(canvas, full, part))
     canvas.save()
     content = stream.getvalue()
-    write_atomically(path, content, lambda written: _verify(written, flat, tiling, [upright] * before))
+    write_atomically(path, content, lambda written: _verify(written, full, tiling, [upright] * before))
 
 
 def _one_page(size: Size) -> Tiling:
@@ -247,8 +254,8 @@ class _Drawing:
         return cls(tuple(shapes), pins, None if target is None else target - low, (width, height), tuple(signs))
 
     @classmethod
-    def of_bed(cls, bed: CutBed) -> _Drawing:
-        """A bed as it is cut."""
+    def of_bed(cls, bed: CutBed, under: FloatArray | None = None) -> _Drawing:
+        """A bed as it is cut, a frame first, in which the outline of a hinge layer lies."""
         shapes = [
             _Shape(
                 bed.layer,
@@ -258,8 +265,10 @@ class _Drawing:
                 place.put(np.asarray(cuts.piece.label_at, dtype=np.float64)),
                 _room(cuts.piece.outline, cuts.piece.label_mm),
             )
-            for cuts, place in bed.placed
+            for cuts, place in sorted(bed.placed, key=lambda placed: placed[0].piece.id != bed.frame)
         ]  # fmt: skip
+        if under is not None:
+            shapes[0] = replace(shapes[0], rings=(*shapes[0].rings, under))
         return cls(tuple(shapes), np.zeros((0, 2)), None, bed.size_mm)
 
 
@@ -407,7 +416,7 @@ def _first_page(canvas: Any, sheet: AssemblySheet, page: Size) -> None:
         low = top - 4.0 - height + 0.5 * (height - scale * drawing.size[1])
         _draw(canvas, drawing, scale, np.array([left + 0.5 * (width - scale * drawing.size[0]), low]))
     y = top - 4.0 - height - GAP_MM
-    _legend(canvas, sheet.legend, y, scale, held=bool(sheet.holds))
+    _legend(canvas, sheet, y, scale)
     column = _Column(canvas, MARGIN_MM, y - GAP_MM, page[0] - 2.0 * MARGIN_MM)
     column.head(tr("Parts"))
     for line in sheet.lines:
@@ -421,21 +430,22 @@ def _first_page(canvas: Any, sheet: AssemblySheet, page: Size) -> None:
     canvas.showPage()
 
 
-def _legend(canvas: Any, legend: Mapping[int, str], y: float, scale: float, *, held: bool) -> None:
+def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
     """The signs of the pictures."""
     x = MARGIN_MM
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
     canvas.setLineWidth(LINE_MM * mm)
-    for layer, words in legend.items():
+    for layer, words in sheet.legend.items():
         ring = square + np.array([x, y])
         _fill(canvas, [ring], FILLS[layer])
         stroke_colour(canvas, EDGES[layer])
         draw_line(canvas, ring, closed=True)
         x = _words(canvas, tr(words), x + 6.0, y)
-    stroke_colour(canvas, PIN)
-    draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
-    x = _words(canvas, tr("pin"), x + 5.0, y)
-    if held:
+    if sheet.assembly.hinges:
+        stroke_colour(canvas, PIN)
+        draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
+        x = _words(canvas, tr("pin"), x + 5.0, y)
+    if sheet.holds:
         _fill(canvas, [np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE], HOLD)
         x = _words(canvas, tr("keeps it so"), x + 5.0, y)
     _words(canvas, tr("pictures at 1 : {scale:.1f}", scale=1.0 / scale), x, y)

@@ -17,6 +17,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.assembly.backed import Board
 from kirigami_studio.assembly.nesting import Bed, LaidShape, nested
 from kirigami_studio.assembly.pieces import Piece, RoundHole
 from kirigami_studio.export.profile import NAME_LAYER, Profile
@@ -176,6 +177,10 @@ class CutBed:
     places : tuple of LaidShape
         Of each of them; the smallest coordinates of all cuts are 0.
     order : CutOrder
+    frame : str
+        Id of the piece round all others, which is cut last; "" for none.
+    kiss : bool
+        Whether pieces in a frame, and its opening, are cut apart from what is cut through.
     """
 
     layer: int
@@ -183,6 +188,8 @@ class CutBed:
     pieces: tuple[PieceCuts, ...]
     places: Bed
     order: CutOrder = CutOrder.SHORTEST
+    frame: str = ""
+    kiss: bool = False
 
     @property
     def name(self) -> str:
@@ -208,15 +215,20 @@ class CutBed:
 
     @cached_property
     def _paths(self) -> tuple[CutPath, ...]:
-        paths = []
+        # What lies in a frame is cut before that lets go of it.
+        groups: tuple[list[CutPath], list[CutPath]] = ([], [])
+        kissed = Layer.KISS if self.kiss else None
         for cuts, place in self.placed:
+            framed = cuts.piece.id != self.frame
+            paths = groups[0 if framed else 1]
             for hole in cuts.holes:
                 arm = np.array([0.5 * hole.diameter_mm, 0.0])
                 centre = np.round(place.put(hole.centre), DECIMALS)
                 paths.append(CutPath(np.array([centre + arm, centre - arm]), Layer.HOLES, True, bulges=np.ones(2)))
-            paths += [CutPath(_rounded(place.put(ring)), Layer.HOLES, True) for ring in cuts.openings]
-            paths.append(CutPath(_rounded(place.put(cuts.outline)), Layer.OUTLINE, True))
-        return in_cutting_order(paths, self.order)
+            paths += [CutPath(_rounded(place.put(ring)), kissed or Layer.HOLES, True) for ring in cuts.openings]
+            layer = (kissed if framed else None) or Layer.OUTLINE
+            paths.append(CutPath(_rounded(place.put(cuts.outline)), layer, True))
+        return tuple(path for paths in groups for path in in_cutting_order(paths, self.order))
 
     @cached_property
     def _numbers(self) -> tuple[FloatArray, ...]:
@@ -293,3 +305,17 @@ def _laid(
                 CutBed(layer, number, here, tuple(replace(place, shift=place.shift - low) for place in places), order)
             )
     return tuple(found)
+
+
+def board_bed(board: Board, kerf_mm: float, kiss: bool = False, order: CutOrder = CutOrder.SHORTEST) -> CutBed:
+    """Lay a board with its tiles on a bed as it is.
+
+    Raises
+    ------
+    FabricationError
+        As :meth:`PieceCuts.of`.
+    """
+    cuts = tuple(PieceCuts.of(piece, kerf_mm) for piece in board.pieces)
+    low = cuts[-1].outline.min(axis=0)
+    places = tuple(LaidShape(number, place - low, 0.0) for number, place in enumerate(board.places))
+    return CutBed(board.pieces[0].layer, 1, cuts, places, order, board.pieces[-1].id, kiss)

@@ -32,7 +32,7 @@ from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRe
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import NAME_LAYER
-from kirigami_studio.export.provenance import PROGRAM
+from kirigami_studio.export.provenance import AROUND, PROGRAM
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
@@ -124,6 +124,7 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
     if of_pieces is not None:
         return _piece_report(Path(path), content, kerf, of_pieces, problems)
     record = _record(content, problems)
+    content = _without_registration(content, problems)
     if not content.paths:
         of_the_name = drawn and "PART" in content.facts
         problems.append(Problem.warning("cut_file.name_alone") if of_the_name else Problem.error("cut_file.empty"))
@@ -175,7 +176,8 @@ def _piece_report(
     areas = np.array([Polygon(ring) for ring in closed], dtype=object)
     starts = [Point(ring[0]) for ring in closed]
     inside = shapely.STRtree(starts).query(areas, predicate="contains_properly")[1]
-    pieces = len(areas) - len(np.unique(inside))
+    # What lies in a hole is a further piece, as the tiles in a frame are.
+    pieces = int(np.sum(np.bincount(inside, minlength=len(areas)) % 2 == 0))
     if whole and pieces != record.pieces:
         problems.append(Problem.error("cut_file.pieces_differ", count=pieces, promised=record.pieces))
     near = (
@@ -301,6 +303,20 @@ def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> 
         clear = nearest_cut([path.points for path in names], [path.points for path in cuts])
         if clear.distance_mm < kerf:
             problems.append(Problem.error("cut_file.name_cuts", clear.where, clear_mm=clear.distance_mm))
+    return replace(content, paths=cuts)
+
+
+def _without_registration(content: DxfContent, problems: list[Problem]) -> DxfContent:
+    """The sheet of a file that makes so many holes round it first; files for single layers are left alone."""
+    promised = content.facts.get(AROUND)
+    if promised is None or "PART" in content.facts:
+        return content
+    count = int(promised) if promised.isdecimal() and len(promised) <= 2 else 0
+    holes, cuts = content.paths[:count], content.paths[count:]
+    sheet = shapely.box(*shapely.total_bounds([LineString(path.points) for path in cuts])) if cuts else Polygon()
+    if not count or not all(path.closed and not sheet.intersects(LineString(path.points)) for path in holes):
+        problems.append(Problem.error("cut_file.registration_differs", promised=promised))
+        return content
     return replace(content, paths=cuts)
 
 

@@ -35,7 +35,7 @@ class FileRecord:
 
     version: str  #: of the program
     design: str  #: identifies the sheet, see ``CutPlan.design_hash``
-    construction: str  #: "one-sheet"
+    construction: str  #: "one-sheet", or "backed" for a hinge layer
     #: material, machine: keys of the preset, and of the machine that was asked for, "" for the one that the material is
     #: for.
     material: str
@@ -92,7 +92,7 @@ def record_of(facts: Mapping[str, str]) -> FileRecord | None:
     return FileRecord(
         version=read.text(PROGRAM),
         design=read.text("DESIGN"),
-        construction=read.one_of("CONSTRUCTION", (ONE_SHEET,)),
+        construction=read.one_of("CONSTRUCTION", (ONE_SHEET, Construction.BACKED.value)),
         material=read.word("MATERIAL"),
         machine=read.text("MACHINE", ""),
         profile=read.profile(),

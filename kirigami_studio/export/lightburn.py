@@ -33,7 +33,14 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
 #: Numbers of the palette: magenta, red, green, blue, as in the DXF profile.
-PALETTE_NUMBER = {Layer.RELIEF: 7, Layer.HOLES: 2, Layer.SLITS: 2, Layer.EDGE_SLITS: 3, Layer.OUTLINE: 1}
+PALETTE_NUMBER = {
+    Layer.RELIEF: 7,
+    Layer.HOLES: 2,
+    Layer.SLITS: 2,
+    Layer.EDGE_SLITS: 3,
+    Layer.KISS: 3,
+    Layer.OUTLINE: 1,
+}
 #: Number of the name in the palette: black.
 NAME_NUMBER = 0
 #: Share of the material's power that the name is engraved with.

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 from shapely.geometry import Polygon
 
 from kirigami_studio.assembly.nesting import LaidShape
@@ -33,7 +34,7 @@ OUTLINE_MM, HOLE_MM, OVERLAP_MM2 = 2e-3, 1e-3, 0.01
 ROUND_SHARE = 0.9
 #: Corners of outlines that agree within this (mm) are the same.
 SAME_MM = 1e-7
-#: Outlines are those of a piece if their middles are nearer than this (mm).
+#: Outlines are those of a piece if their middles, and the roots of their areas, are nearer than this (mm).
 SAME_PLACE_MM = 0.5
 #: Share of its margin that a number may be nearer to a cut: rounding.
 NUMBER_NEARER = 0.01
@@ -138,21 +139,30 @@ def found_pieces(
 
 
 def _nesting(rings: FloatArray) -> tuple[IntArray, dict[int, list[int]]]:
-    """Rings that lie in no other, and those that lie in each of them."""
+    """Rings that are outlines, and those that are cut out of each of them.
+
+    What lies in a hole is the outline of a further piece, as the tiles in a frame are.
+    """
     starts = shapely.points([shapely.get_coordinates(ring)[0] for ring in rings])
     holder, held = shapely.STRtree(starts).query(rings, predicate="contains_properly")
-    outer = np.setdiff1d(np.arange(len(rings)), held)
-    return outer, {int(one): held[holder == one].tolist() for one in outer}
+    depth = np.bincount(held, minlength=len(rings))
+    outer = np.flatnonzero(depth % 2 == 0)
+    return outer, {int(one): held[(holder == one) & (depth[held] == depth[one] + 1)].tolist() for one in outer}
 
 
 def _matched(outlines: FloatArray, bed: CutBed) -> list[int] | None:
-    """Number of the outline of each piece of a bed; None unless each piece has one of its own."""
-    meant = shapely.centroid(np.array([Polygon(place.put(one.outline)) for one, place in bed.placed], dtype=object))
+    """Number of the outline of each piece of a bed; None unless each piece has one of its own.
+
+    Middles may be the same of a frame and a piece in it, so that sizes are compared, too.
+    """
+    meant = np.array([Polygon(place.put(one.outline)) for one, place in bed.placed], dtype=object)
     if len(meant) != len(outlines):
         return None
-    (_, number), away = shapely.STRtree(shapely.centroid(outlines)).query_nearest(
-        meant, return_distance=True, all_matches=False
-    )
+    places = [
+        np.column_stack([shapely.get_coordinates(shapely.centroid(shapes)), np.sqrt(shapely.area(shapes))])
+        for shapes in (outlines, meant)
+    ]
+    away, number = cKDTree(places[0]).query(places[1])
     if len(set(number.tolist())) != len(meant) or float(away.max()) > SAME_PLACE_MM:
         return None
     found: list[int] = number.tolist()

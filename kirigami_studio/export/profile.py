@@ -62,7 +62,7 @@ class Profile:
         """Name of a layer in files of this profile."""
         if self.one_layer:
             return ONE_LAYER
-        return SLOT_LAYER if self.slots and layer not in (Layer.HOLES, Layer.OUTLINE) else layer.value
+        return SLOT_LAYER if self.slots and layer not in (Layer.HOLES, Layer.KISS, Layer.OUTLINE) else layer.value
 
 
 _ALL_RED = MappingProxyType(dict.fromkeys(Layer, RED))
@@ -72,6 +72,7 @@ _BY_LAYER = MappingProxyType(
         Layer.HOLES: RED,
         Layer.SLITS: RED,
         Layer.EDGE_SLITS: GREEN,
+        Layer.KISS: GREEN,
         Layer.OUTLINE: BLUE,
     }
 )

@@ -38,6 +38,8 @@ PROGRAM = "KIRIGAMI_STUDIO"
 ONE_SHEET = "one-sheet"
 #: The fact with the kerf that slots are as wide as, and that with the level of the verdict of the export.
 SLOT_KERF, VERDICT = "SLOT_KERF_MM", "VERDICT"
+#: The fact with the number of holes round the sheet that are made first.
+AROUND = "HOLES_AROUND"
 #: Raised when entries change their meaning.
 VERSION = 1
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import shapely
@@ -155,6 +155,13 @@ def cutting_work(strokes: Sequence[Stroke], material: Material, machine: Machine
     paths = [CutPath(stroke.points, Layer.SLITS, stroke.closed, bulges=stroke.bulges) for stroke in strokes]
     length, travel = sum(path.length for path in paths), float(travel_lengths(paths).sum())
     return Work(length, travel, cut_times(paths, material, machine))
+
+
+def total_work(works: Sequence[Work]) -> Work:
+    """Length and time of several files together."""
+    length, travel = (sum(getattr(work, name) for work in works) for name in ("cut_length_mm", "travel_mm"))
+    times = CutTimes(*(sum(getattr(work.times, entry.name) for work in works) for entry in fields(CutTimes)))
+    return Work(length, travel, times)
 
 
 def layer_colours(strokes: Sequence[Stroke]) -> dict[str, int]:

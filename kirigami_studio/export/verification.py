@@ -456,6 +456,12 @@ def file_voids(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> Fo
     return read_voids(strokes, outlines, plan.kerf_mm, profile.slots).moved(frame_origin(plan, profile))
 
 
+def sheet_findings(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> list[Finding]:
+    """What the strokes of one sheet, as read, leave of it: pieces, widths, voids; see :func:`file_physics`."""
+    physics, voids = file_physics(strokes, plan, profile), file_voids(strokes, plan, profile)
+    return [*_physics_findings(physics, plan), *void_findings(voids, plan)]
+
+
 def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     """Whether the sheet can close, by the connectors that were read from its file.
 

@@ -25,7 +25,8 @@ from kirigami_studio.fabricate.finished_sheet import (
     smallest_ligament,
 )
 from kirigami_studio.fabricate.joints import joined_pairs
-from kirigami_studio.fabricate.machine import kinds_for
+from kirigami_studio.fabricate.machine import Machine, kinds_for
+from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import SmallPlace, smallest_edge, smallest_neck, trimmed_neck_below
 from kirigami_studio.fabricate.strain import RigidPanels, Survival, escapes, survival, used_up
@@ -67,9 +68,11 @@ def check_plan(
     phi : float, radians, optional
         Target angle of the deployment; without it nothing is said about how far the connectors bend.
     rigid : RigidPanels, optional
-        Tiles on the sheet, which is the hinge layer under them.
+        Tiles on the sheet, which is the hinge layer under them; those of the plan unless given.
     """
     kerf = plan.kerf_mm if kerf_mm is None else kerf_mm
+    if rigid is None and phi is not None and plan.tiles is not None:
+        rigid = plan.tiles.rigid_panels(plan.hinges, kerf, phi)
     inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
     lines = [measured_line(path.points, path.bulges, path.closed) for path in inner]
     boundary = Polygon(plan.outline)
@@ -87,8 +90,8 @@ def check_plan(
         *_ligament_problems(plan, kerf, ligament),
         *panel_problems(plan, kerf, edge, neck),
         *bed_problems(plan),
-        *machine_problems(plan),
-        *([] if phi is None else _limits(plan)),
+        *machine_problems(plan.chosen_machine, plan.material),
+        *([] if phi is None or rigid is not None else _limits(plan)),
         *([] if bent is None else strain_problems(plan, bent)),
     ]
     return PlanReport(
@@ -261,10 +264,8 @@ def _limits(plan: CutPlan) -> list[Problem]:
 
 def bed_problems(plan: CutPlan) -> list[Problem]:
     """Warn about a sheet that the machine cannot reach all of, whichever way round it lies."""
-    bed = plan.machine.reach_mm
-    width, height = plan.bounds_mm
-    fits = any(width <= across and height <= along for across, along in (bed, bed[::-1]))
-    if min(bed) == 0.0 or fits:
+    bed, (width, height) = plan.machine.reach_mm, plan.bounds_mm
+    if fits_on(bed, (width, height)):
         return []
     largest = width * max(min(across / width, along / height) for across, along in (bed, bed[::-1]))
     return [
@@ -279,10 +280,14 @@ def bed_problems(plan: CutPlan) -> list[Problem]:
     ]
 
 
-def machine_problems(plan: CutPlan) -> list[Problem]:
-    """Warn about a material that is too thick for the chosen machine, or unknown to it."""
-    machine, material = plan.machine, plan.material
-    if plan.chosen_machine is None or machine.takes(material):
+def fits_on(bed: tuple[float, float], size: tuple[float, float]) -> bool:
+    """Whether something of a size (width, height; mm) fits on a bed, 0 for any, whichever way round it lies."""
+    return min(bed) == 0.0 or any(size[0] <= across and size[1] <= along for across, along in (bed, bed[::-1]))
+
+
+def machine_problems(machine: Machine | None, material: Material) -> list[Problem]:
+    """Warn about a material that is too thick for a machine that was chosen, or unknown to it."""
+    if machine is None or machine.takes(material):
         return []
     if machine.kind not in kinds_for(material):
         return [Problem.warning("plan.machine_does_not_cut", machine=machine.name, material=material.name)]

@@ -31,6 +31,7 @@ class Layer(Enum):
     HOLES = "HOLES"  #: and openings in the pieces of an assembly
     SLITS = "SLITS"
     EDGE_SLITS = "EDGE_SLITS"
+    KISS = "KISS"  #: tiles that are cut to the liner of their board
     OUTLINE = "OUTLINE"
 
 

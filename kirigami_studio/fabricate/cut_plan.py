@@ -33,6 +33,7 @@ from kirigami_studio.fabricate.ordering import in_cutting_order
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, edge_sides, sheet_lines
 from kirigami_studio.fabricate.tabs import joined_ring, tabbed
+from kirigami_studio.fabricate.tiles import TileSizes
 from kirigami_studio.fabricate.trimmed_sheet import (
     STRAIGHT_MM,
     UNTRIMMED_STRAIGHT_MM,
@@ -95,6 +96,7 @@ class CutPlan:
     trimmed: int = 0  #: panels of which something was trimmed off
     verdict: str = ""  #: level of the verdict on the sheet, repeated in every file of the plan; decides nothing
     chosen_machine: Machine | None = None  #: That was asked for; None for the one that the material is for.
+    tiles: TileSizes | None = None  #: of tiles that are glued on it; None for a sheet that is made by itself
 
     @cached_property
     def machine(self) -> Machine:

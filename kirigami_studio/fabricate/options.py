@@ -44,6 +44,13 @@ class CutOrder(StrEnum):
     SPREAD = "spread"
 
 
+class BoardCut(StrEnum):
+    """How the tiles of backed sheets are cut; the values stand on the command line and in files."""
+
+    KISS = "kiss"  #: through the board, not its liner: tiles stay in place, what is between them is weeded
+    THROUGH = "through"  #: all through: tape over the board keeps tiles in place
+
+
 @dataclass(frozen=True, slots=True)
 class CutOptions:
     """Choices about the cuts.

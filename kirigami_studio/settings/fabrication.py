@@ -39,10 +39,10 @@ from kirigami_studio.fabricate.material import (
     find_material,
     library,
 )
-from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
+from kirigami_studio.fabricate.options import BoardCut, ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.foundation.errors import ExportError, FabricationError, UsageError
 from kirigami_studio.foundation.settings import Choice, Setting, check, settings_of
-from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.foundation.words import mark
 
 LARGEST_SHEET_MM = 10_000.0
 
@@ -89,6 +89,10 @@ class FabricationSettings:
         of the construction: 0.6 and 0.3 mm.
     gap_mm : float
         By which the tiles of backed sheets are smaller than their panels, all round.
+    second_material : str
+        Key of the other sheet of backed designs: hinge layer or board; "" for the one that suits the material.
+    board_cut : BoardCut
+        How their tiles are cut.
     held_by : HoldKind
         What keeps the sheet in an end state.
     held_when : HoldWhen
@@ -194,7 +198,9 @@ class FabricationSettings:
                 Choice(
                     Construction.BACKED,
                     mark("Tiles on a soft sheet"),
-                    mark("The sheet that is cut is the hinge layer; tiles for it are exported as 3MF or STL to print."),
+                    mark(
+                        "Tiles of board are glued on a soft sheet, which has the cuts: for boards, cloth, tape, film."
+                    ),
                 ),
                 Choice(
                     Construction.PRINTED,
@@ -254,6 +260,36 @@ class FabricationSettings:
             0.0,
             20.0,
         ),
+    )
+    second_material: str = field(
+        default="",
+        metadata=Setting(
+            about=mark("The other material of tiles on a soft sheet: the soft sheet for a board, or the board."),
+            help="the other material of backed sheets: hinge layer of a board, or board (default: cotton, or card)",
+            may_be_empty=True,
+            code="settings.material_not_a_name",
+            undo=mark("Change the second material"),
+            label=mark("Second material"),
+            spoken=mark("Second material"),
+            option="--second-material",
+        ).metadata,
+    )
+    board_cut: BoardCut = field(
+        default=BoardCut.THROUGH,
+        metadata=Setting(
+            about=mark("How the tiles on a soft sheet are cut out of their board."),
+            help="how tiles of backed sheets are cut",
+            code="settings.no_such_choice",
+            undo=mark("Change the cut of the tiles"),
+            label=mark("Tiles"),
+            choices=(
+                Choice(BoardCut.THROUGH, mark("Cut through"), mark("Tape over the board keeps the tiles in place.")),
+                Choice(
+                    BoardCut.KISS, mark("Kiss cut"), mark("The board is cut, not its liner; the rest is weeded off.")
+                ),
+            ),
+            option="--board-cut",
+        ).metadata,
     )
     held_by: HoldKind = field(
         default=HoldKind.NONE,
@@ -466,6 +502,8 @@ class SheetChange(TypedDict, total=False):
     ear_mm: float | None
     clearance_mm: float | None
     gap_mm: float
+    second_material: str
+    board_cut: BoardCut | str
     held_by: HoldKind | str
     held_when: HoldWhen | str
     magnet_mm: float
@@ -552,28 +590,6 @@ def construction_for(settings: FabricationSettings) -> Construction:
         No such material.
     """
     return settings.construction or material_for(settings).construction
-
-
-def note_before_run(settings: FabricationSettings) -> Note | None:
-    """Return a note on the construction, or on the limits of one sheet, or None.
-
-    Raises
-    ------
-    FabricationError
-        No such material.
-    """
-    return note_on(material_for(settings), settings)
-
-
-def note_on(material: Material, settings: FabricationSettings) -> Note | None:
-    """Return the same note for a material that is known, whatever the settings name."""
-    construction = settings.construction or material.construction
-    if construction is Construction.PRINTED:
-        return Note.of("construction.printed", material=tr(material.name))
-    if construction is Construction.PINNED:
-        fastener = tr(SIZES[settings.fastener].name)
-        return Note.of("construction.pinned", material=tr(material.name), fastener=fastener)
-    return material.limits_note
 
 
 def is_pinned(settings: FabricationSettings) -> bool:
@@ -789,6 +805,8 @@ def with_choices(saved: FabricationSettings, given: Mapping[str, Any]) -> Fabric
     changes: dict[str, Any] = {**construction_changes(saved, named), **named}
     if "material" in given:
         changes["material"] = find_material(given["material"]).key
+    if given.get("second_material"):
+        changes["second_material"] = find_material(given["second_material"]).key
     if given.get("machine"):
         machine = find_machine(given["machine"])
         changes["machine"] = machine.key

@@ -9,17 +9,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
+import shapely
 
+from kirigami_studio.assembly.backed import BackedSheet
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.siou import siou_of_many
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.fabricate.centres import bending_lengths, void_hinges
 from kirigami_studio.fabricate.connectors import hinge_widths
-from kirigami_studio.fabricate.cut_panels import CutPanels, cut_panels
+from kirigami_studio.fabricate.cut_panels import CutPanels, PanelLines, cut_panels
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.endings import BAR_SPANS, HALF_ANGLES
 from kirigami_studio.fabricate.hinged_cuts import HOLED
@@ -28,7 +30,8 @@ from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
 from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
-from kirigami_studio.fabricate.strain import StrainFigure, Survival, survival, used_up
+from kirigami_studio.fabricate.strain import RigidPanels, StrainFigure, Survival, survival, used_up
+from kirigami_studio.fabricate.tiles import TileSizes
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import result_of
@@ -57,6 +60,7 @@ from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, material_for
+from kirigami_studio.settings.layers import hinge_layer, sheet_material
 
 MPA_PER_GPA = 1e3
 #: A sheet within this (radians) of being closed has closed.
@@ -259,7 +263,11 @@ def planned_sheet(
         np.where(longer > LONGER_MM, longer, 0.0),
         hinges.aside,
     )
-    bows = None if centres is None or on_nodes else _meetings(connectors, plan, deployment, shift)
+    if plan.tiles is not None:  # soft flanks give way: tiles alone run into each other
+        connectors = replace(connectors, touch=np.minimum(connectors.touch, 0.0))
+        bows = _meetings_of_tiles(connectors, plan, deployment, shift)
+    else:
+        bows = None if centres is None or on_nodes else _meetings(connectors, plan, deployment, shift)
     young = plan.material.young_gpa if young_gpa is None else young_gpa
     elastic = ElasticSheet(MPA_PER_GPA * young, plan.material.thickness_mm)
     return sheet_network(polygons_as_rows(polygons), connectors, elastic, bows)
@@ -272,12 +280,36 @@ def _shift_of(plan: CutPlan, polygons: Sequence[FloatArray]) -> FloatArray:
 
 def _meetings(connectors: SheetConnectors, plan: CutPlan, deployment: Deployment, shift: FloatArray) -> Meetings:
     """Where panels with the bows of a plan run into each other."""
+    panels = cut_panels(plan).moved(shift).numbered(len(plan.panels))
+    return meetings(panels, connectors, _at_voids(plan, deployment), plan.kerf_mm)
+
+
+def _meetings_of_tiles(
+    connectors: SheetConnectors, plan: CutPlan, deployment: Deployment, shift: FloatArray
+) -> Meetings:
+    """The same of the tiles on a hinge layer, as they are finished."""
+    tiles = _tiled(plan, deployment).moved(shift).numbered(len(plan.panels))
+    return meetings(tiles, connectors, _at_voids(plan, deployment), 0.0)
+
+
+def _tiled(plan: CutPlan, deployment: Deployment) -> CutPanels:
+    """Tiles in the place of the panels that they are glued on."""
+    columns = deployment.topology.columns + 1
+    rings = [
+        (row * columns + column, shapely.get_coordinates(tile.exterior)[:-1])
+        for (row, column), tile in BackedSheet(plan, deployment, 0.0, plan.tiles or TileSizes()).flat_tiles.items()
+    ]
+    return CutPanels(PanelLines.of(rings), PanelLines.of([]))
+
+
+def _at_voids(plan: CutPlan, deployment: Deployment) -> IntArray:
+    """Connectors (V, 4) at the corners of every void, counted among those that there are."""
     table = cut_table(*deployment.sheet.grid)
     there = np.flatnonzero(plan.hinges.finished_mm > 0.0)
     number = np.full(table.hinge_count + 1, NO_CONNECTOR)  # the last one for corners without a hinge
     number[there] = np.arange(len(there))
-    panels = cut_panels(plan).moved(shift).numbered(len(plan.panels))
-    return meetings(panels, connectors, number[void_hinges(table)], plan.kerf_mm)
+    found: IntArray = number[void_hinges(table)]
+    return found
 
 
 def _longer_by_bows(flexure_mm: FloatArray, width_mm: FloatArray, kerf_mm: float) -> FloatArray:
@@ -339,6 +371,7 @@ def estimate(
     FabricationError
         No such material, or widths that make no sense.
     """
+    settings = hinge_layer(settings)
     chosen = material_for(settings) if material is None else material
     if is_pinned(settings):
         return motion_on_pins(phi)
@@ -370,7 +403,7 @@ def estimated_jam(found: StretchEstimate, tolerated: float = TOLERATED_STRETCH) 
 
 def all_break(deployment: Deployment, settings: FabricationSettings, phi: float, material: Material) -> bool:
     """Whether all connectors break at an angle (radians), without planning the cuts."""
-    sheet = _unplanned_sheet(deployment, settings, material)
+    sheet = _unplanned_sheet(deployment, hinge_layer(settings), material)
     return bool(np.all(used_up(material, sheet.connectors.width_mm, *_both_figures(sheet, phi)) > 1.0))
 
 
@@ -402,7 +435,7 @@ def estimates(candidates: Iterable[Candidate], settings: FabricationSettings) ->
     FabricationError
         No such material.
     """
-    material, found = material_for(settings), {}
+    material, found = sheet_material(settings), {}
     for candidate in candidates:
         try:
             found[candidate] = estimate(deploy(candidate.final_sheet), settings, candidate.final_phi, material)
@@ -451,7 +484,7 @@ def simulate(
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
     panels = cut_panels(plan).moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
-    as_cut = _simulated(plan.material, found, jam, phi, lap)
+    as_cut = _simulated(plan, found, jam, phi, lap)
     return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made)
 
 
@@ -473,14 +506,21 @@ def simulated(
     return result_of(simulate(motion, plan, width_mm, candidate.final_phi, target, kept))
 
 
-def _simulated(material: Material, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:
+def _simulated(plan: CutPlan, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:
     closes = jam <= phi + CLOSE_TO
     reached = phi if closes else jam
     worst = found.stretch.max(axis=1)
     largest = float(worst[_until(found, phi)].max())
     blame = Outcome.STRETCHED if float(worst.max()) > TOLERATED_STRETCH else Outcome.TOUCHING
     until = _until(found, reached)
-    judged = survival(material, found.sheet.connectors.width_mm, found.in_plane[until], found.out_of_plane[until])
+    connectors = found.sheet.connectors
+    rigid: RigidPanels | None = None
+    if plan.tiles is not None:
+        there = np.flatnonzero(plan.hinges.finished_mm > 0.0)
+        free = plan.tiles.rigid_panels(plan.hinges, plan.kerf_mm, reached).of(there)
+        rigid = replace(free, flexure_mm=connectors.flexure_mm)
+    figures = found.in_plane[until], found.out_of_plane[until]
+    judged = survival(plan.material, connectors.width_mm, *figures, rigid)
     return _made(jam, phi, Outcome.CLOSES if closes else blame, largest, judged, Source.SIMULATION, lap)
 
 

@@ -11,6 +11,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.dxf_check import FileReport, check_file
 from kirigami_studio.export.file_record import FileRecord, PieceRecord
 from kirigami_studio.export.layer_files import layer_paths
+from kirigami_studio.export.provenance import ONE_SHEET
 from kirigami_studio.export.verification import Verification, verify_export
 from kirigami_studio.fabricate.cut_plan import design_hash
 from kirigami_studio.fabricate.fastener import Fastener
@@ -88,7 +89,19 @@ class Checked:
                     version=record.version,
                 )
             )
-        if (pieces := report.of_pieces) is not None:
+        if (pieces := report.of_pieces) is not None and pieces.construction == Construction.BACKED:
+            found.append(
+                tr(
+                    "made with: {material}, tiles for a hinge layer, registration holes {pin:g} mm, kerf {kerf:g} mm, "
+                    "profile {profile}, version {version}",
+                    material=pieces.material,
+                    pin=pieces.pin_mm,
+                    kerf=pieces.kerf_mm,
+                    profile=pieces.profile.key,
+                    version=pieces.version,
+                )
+            )
+        elif pieces is not None:
             found.append(
                 tr(
                     "made with: {material}, {construction}, layer {layer}, bed {bed}, pins {pin:g} mm, ears {ear:g} "
@@ -107,7 +120,8 @@ class Checked:
             )
         if self.said is not None:
             found.append(tr("verdict when it was exported: {level}", level=self.said.words))
-        if self.verdict is None and (record is not None or report.of_pieces is not None):
+        one_sheet = record is not None and record.construction == ONE_SHEET
+        if self.verdict is None and (one_sheet or (pieces is not None and pieces.construction != Construction.BACKED)):
             found.append(
                 tr("not checked: whether the sheet closes and its material holds; name its project by --design")
             )
@@ -133,7 +147,9 @@ def checked(path: Path, document: Document | None = None) -> Checked:
         The project has no chosen design.
     """
     report = check_file(path)
-    if document is None or not _is_cut_file(report):
+    # One layer of a backed design says nothing about how all of it moves.
+    backed = Construction.BACKED in {one.construction for one in (report.record, report.of_pieces) if one is not None}
+    if document is None or backed or not _is_cut_file(report):
         return Checked(report)
     if report.of_pieces is not None:
         return _checked_beds([report], document)[0]

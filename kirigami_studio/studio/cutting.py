@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from kirigami_studio.assembly.backed import LEAST_TILE_MM
 from kirigami_studio.assembly.checks import PinnedReport
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
@@ -16,6 +17,7 @@ from kirigami_studio.fabricate.hold import HoldKind
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.fabricate.slits import cut_table
+from kirigami_studio.fabricate.tiles import TileSizes
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -26,6 +28,7 @@ from kirigami_studio.settings.fabrication import (
     stored_values,
     unlike,
 )
+from kirigami_studio.settings.layers import board_layer, hinge_layer, is_backed
 
 
 def plan_of(
@@ -53,7 +56,7 @@ def plan_of(
     FabricationError
         No such material, or a plan that cannot be made.
     """
-    trim = candidate.trim
+    trim, settings = candidate.trim, hinge_layer(settings)
     kept = None if trim is None else trim.kept
     plan = plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept, cancel)
     return replace(engraved(plan, name), name=name) if settings.engrave and name else plan
@@ -65,7 +68,9 @@ def plan_sheet(
     kept: Sequence[FloatArray | None] | None = None,
     cancel: Callable[[], bool] = lambda: False,
 ) -> CutPlan:
-    """Plan the cuts of any sheet; ``kept`` is what stays of every panel of a trimmed one, as in a trim.
+    """Plan the cuts of any sheet, or of the hinge layer of a backed one.
+
+    ``kept`` is what stays of every panel of a trimmed one, as in a trim.
 
     Raises
     ------
@@ -74,6 +79,10 @@ def plan_sheet(
     FabricationError
         No such material, or a plan that cannot be made.
     """
+    tiles = None
+    if is_backed(settings):
+        tiles = TileSizes(settings.gap_mm, least_mm=least_tile_mm(material_for(board_layer(settings))))
+    settings = hinge_layer(settings)
     machine = named_machine(settings)
     plan = plan_cuts(
         deployment,
@@ -97,7 +106,7 @@ def plan_sheet(
     ]
     if settings.machine and machine is None:
         told.append(Note.of("plan.machine_unknown", name=settings.machine, machine=plan.machine.name))
-    return replace(plan, notes=(*plan.notes, *told)) if told else plan
+    return replace(plan, notes=(*plan.notes, *told), tiles=tiles) if told or tiles is not None else plan
 
 
 def refuse_errors(report: PlanReport | PinnedReport) -> None:
@@ -134,15 +143,24 @@ ROOM_IN_WIDTHS = 2.75
 
 
 def least_feature_mm(settings: FabricationSettings) -> float:
-    """Least panel edge and neck, between centre lines of cuts, that the settings' material allows.
+    """Least panel edge and neck, between centre lines of cuts, that the settings' materials allow.
 
     Raises
     ------
     FabricationError
         No such material.
     """
-    material = material_for(settings)
-    return max(material.min_ligament_mm, material.min_panel_mm) + kerf_mm(settings, material)
+    cut = hinge_layer(settings)
+    material = material_for(cut)
+    least = max(material.min_ligament_mm, material.min_panel_mm)
+    if is_backed(settings):
+        least = max(least, least_tile_mm(material_for(board_layer(settings))) + 2.0 * settings.gap_mm)
+    return least + kerf_mm(cut, material)
+
+
+def least_tile_mm(board: Material) -> float:
+    """Least width of a tile."""
+    return max(board.min_panel_mm, board.min_ligament_mm, LEAST_TILE_MM)
 
 
 def room_mm(settings: FabricationSettings) -> float:
@@ -153,9 +171,10 @@ def room_mm(settings: FabricationSettings) -> float:
     FabricationError
         No such material.
     """
-    material = material_for(settings)
-    connector = material.connector_mm if settings.connector_mm is None else settings.connector_mm
-    return ROOM_IN_WIDTHS * connector + kerf_mm(settings, material)
+    cut = hinge_layer(settings)
+    material = material_for(cut)
+    connector = material.connector_mm if cut.connector_mm is None else cut.connector_mm
+    return ROOM_IN_WIDTHS * connector + kerf_mm(cut, material)
 
 
 def kerf_mm(settings: FabricationSettings, material: Material) -> float:

@@ -38,6 +38,7 @@ from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document, Void
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for, pin_gap_mm
+from kirigami_studio.settings.layers import hinge_layer
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm
 
@@ -283,6 +284,7 @@ def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: floa
     if not request.trim:
         return replace(request, least_panel=least)
     # How deep material has to stay at the hinges of a trimmed sheet so that its connectors hold.
+    cut = hinge_layer(cut)
     widths = (cut.width_mm, cut.connector_mm, cut.kerf_mm)
     return replace(request, least_panel=least, keep=keep_for_connectors(request.uniform, material_for(cut), *widths))
 
@@ -348,6 +350,7 @@ def one_sheet(cut: FabricationSettings) -> FabricationSettings:
         paper=plain.paper,
         markers=plain.markers,
         engrave=plain.engrave,
+        board_cut=plain.board_cut,
     )
 
 
@@ -475,5 +478,5 @@ def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
     """Depth (unit cells) of the material that trimming has to leave at the hinges of a candidate."""
     from kirigami_studio.pipeline.redesign import keep_for_connectors
 
-    sheet, material = candidate.sheet, material_for(settings)
-    return keep_for_connectors(sheet, material, settings.width_mm, settings.connector_mm, settings.kerf_mm)
+    sheet, cut = candidate.sheet, hinge_layer(settings)
+    return keep_for_connectors(sheet, material_for(cut), cut.width_mm, cut.connector_mm, cut.kerf_mm)

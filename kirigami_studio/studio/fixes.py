@@ -15,7 +15,6 @@ from itertools import product
 from types import MappingProxyType
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.fastener import SIZES, Fastener
 from kirigami_studio.fabricate.findings import Note, Problem
 from kirigami_studio.fabricate.machine import cuttable
@@ -39,12 +38,13 @@ from kirigami_studio.settings.fabrication import (
     is_pinned,
     is_printed,
     machine_for,
-    material_for,
     named_machine,
     pin_sizes,
 )
+from kirigami_studio.settings.layers import hinge_layer, sheet_material
 from kirigami_studio.studio.as_cut import ESTIMATE_CLOSES, AsCut, all_break, estimate
 from kirigami_studio.studio.assembling import assembled
+from kirigami_studio.studio.backing import checked_plan
 from kirigami_studio.studio.cutting import plan_of
 from kirigami_studio.studio.verdict import TOO_SMALL, Level, Verdict, closed_as_cut, judge, judge_assembled
 
@@ -203,7 +203,7 @@ def find_fixes(
     FabricationError
         No such material.
     """
-    search = _Search(verdict, material_for(settings), target)
+    search = _Search(verdict, sheet_material(settings), target)
     if not candidate.score.feasible and candidate.trim is None:
         # However it is cut, its panels overlap.
         yield from search.try_all(_other_designs(candidate, settings, others), MOST_FIXES)
@@ -268,7 +268,7 @@ class _Search:
         return Advice(tuple(fixes), tried)
 
     def _connector_mm(self, settings: FabricationSettings) -> float:
-        return material_for(settings).connector_mm if settings.connector_mm is None else settings.connector_mm
+        return sheet_material(settings).connector_mm if settings.connector_mm is None else settings.connector_mm
 
     def try_all(self, changes: Iterable[_Change], enough: int) -> Generator[None, None, None]:
         """Try changes in order, until enough of them work or too many were planned."""
@@ -297,10 +297,10 @@ class _Search:
         self.planned += 1
         try:
             plan = plan_of(candidate, settings, motion)
+            yield
+            report, _ = checked_plan(candidate, plan, motion, settings)
         except KirigamiError:
             return
-        yield
-        report = check_plan(plan, phi=candidate.final_phi)
         if not judge(candidate, plan, report, None).better_than(self.verdict):
             return
         yield
@@ -319,7 +319,7 @@ class _Search:
         """Whether its connectors break or the sheet jams, as estimated; thin sheets that jam are kept for later."""
         settings, phi = change.settings, change.candidate.final_phi
         try:
-            material = material_for(settings)
+            material = sheet_material(settings)
             if all_break(motion, settings, phi, material):
                 return True
             found = estimate(motion, settings, phi, material)
@@ -516,7 +516,7 @@ def _wider(candidate: Candidate, settings: FabricationSettings, width_mm: float)
 
 
 def _widest(settings: FabricationSettings) -> float:
-    return max(machine_for(settings).reach_mm) or WIDEST_MM
+    return max(machine_for(hinge_layer(settings)).reach_mm) or WIDEST_MM
 
 
 def _styles(material: Material, settings: FabricationSettings) -> list[ConnectorStyle]:
@@ -572,7 +572,9 @@ def _other_materials(candidate: Candidate, settings: FabricationSettings) -> Ite
     for key, material in (library().items if machine is None else cuttable(machine)).items():
         if key != settings.material and material.limits_note is None:
             options = replace(settings.options, style=ConnectorStyle.CENTRED, hinge_mm=(), removed=())
-            other = replace(settings, material=key, connector_mm=None, kerf_mm=None, options=options, own=None)
+            other = replace(
+                settings, material=key, construction=None, connector_mm=None, kerf_mm=None, options=options, own=None
+            )
             yield _Change(Note.of("fix.material", material=material.name), candidate, other)
 
 

@@ -15,7 +15,7 @@ import shapely
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.export.artwork import Artwork
-from kirigami_studio.fabricate.findings import Severity
+from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import (
@@ -43,6 +43,7 @@ from kirigami_studio.settings.fabrication import (
     pin_sizes,
     printed_pins,
 )
+from kirigami_studio.settings.layers import board_layer, hinge_layer, is_backed, sheet_material
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import kerf_mm, refuse_errors
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
@@ -52,7 +53,7 @@ if TYPE_CHECKING:
     from kirigami_studio.assembly.nesting import LaidShape
     from kirigami_studio.assembly.pieces import Piece
     from kirigami_studio.assembly.posed_pieces import PosedPieces
-    from kirigami_studio.export.assembly_files import AssemblyJob
+    from kirigami_studio.export.assembly_files import AssemblyFiles, AssemblyJob
     from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.print_files import PrintJob
@@ -67,10 +68,15 @@ if TYPE_CHECKING:
     from kirigami_studio.project.document import Document
     from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
     from kirigami_studio.studio.assembling import Assembled
+    from kirigami_studio.studio.backing import Backing
     from kirigami_studio.studio.fixes import Advice
     from kirigami_studio.studio.verdict import Verdict
 
 ANIMATION = ".gif"
+#: Problems of tiles that leave no board to cut.
+NO_BOARD = ("backed.cuts_merge", "printed.no_tiles")
+#: Kinds of files that hold tiles to print.
+SOLIDS = (".3mf", ".obj", ".stl")
 #: Plans that are kept: a design that is chosen again, or exported, has its cuts at once.
 MOST_PLANS = 16
 #: Designs that are estimated between two reports.
@@ -92,8 +98,14 @@ class Planned:
     report: PlanReport
     verdict: Verdict  #: What is to be expected as long as nobody has closed the sheet on its connectors
     removed_share: float = 0.0  #: 0..1; share of the sheet that was trimmed away
-    #: Length and time where the file holds other cuts than the plan: a closed slot for every slit, or several copies
+    #: Length and time where files hold other cuts than the plan: closed slots for slits, several copies, two layers
     work: Work | None = None
+    layers: AssemblyJob | None = None  #: Both layers of a backed design, whose plan is that of the hinge layer
+
+    @property
+    def seconds(self) -> float:
+        """Estimated time of all cuts."""
+        return (self.plan.times if self.work is None else self.work.times).total
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +200,11 @@ class CutRequest:
     def is_pinned(self) -> bool:
         """Whether it is made of pieces on pins."""
         return is_pinned(self.settings)
+
+    @property
+    def has_layers(self) -> bool:
+        """Whether its files are those of several layers, in a folder."""
+        return self.is_pinned or is_backed(self.settings)
 
     @property
     def facts(self) -> Mapping[str, str]:
@@ -303,15 +320,7 @@ class MadePieces:
                 LaidBed(tr("Plate {number}", number=plate.number), plate.placed, plate.size_mm)
                 for plate in self.printing.plates
             )
-        beds = () if self.cutting is None else self.cutting.beds
-        return tuple(
-            LaidBed(
-                tr("Layer {layer}, bed {bed}", layer=bed.layer, bed=bed.number),
-                tuple((cuts.piece, place) for cuts, place in bed.placed),
-                bed.size_mm,
-            )
-            for bed in beds
-        )
+        return () if self.cutting is None else laid_beds(self.cutting)
 
     @property
     def works(self) -> tuple[Work, ...]:
@@ -333,6 +342,18 @@ class MadePieces:
     def seconds(self) -> float:
         """Estimated time of cutting all beds, without changing the sheets."""
         return sum(work.times.total for work in self.works)
+
+
+def laid_beds(job: AssemblyJob) -> tuple[LaidBed, ...]:
+    """Pieces on each bed of what is cut."""
+    return tuple(
+        LaidBed(
+            tr("Layer {layer}, bed {bed}", layer=bed.layer, bed=bed.number),
+            tuple((cuts.piece, place) for cuts, place in bed.placed),
+            bed.size_mm,
+        )
+        for bed in job.beds
+    )
 
 
 def pieces_of(request: CutRequest) -> MadePieces:
@@ -433,10 +454,14 @@ def picturing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[tupl
         yield request, pieces
 
 
-def writes_pieces(output: Output) -> bool:
-    """Whether an output of a pinned design is the folder of its pieces: for cut files, no pictures."""
+def writes_layers(request: CutRequest, output: Output) -> bool:
+    """Whether an output is the folder of the layers of a design: for cut files, no pictures and no tiles to print."""
     kind = output.path.suffix.lower()
-    return output.name is not None or not kind or any(one.extension == kind and one.cuts for one in FILE_KINDS)
+    if not request.has_layers:
+        return False
+    if output.name is not None or not kind:
+        return True
+    return any(one.extension == kind and one.cuts for one in FILE_KINDS) and (request.is_pinned or kind not in SOLIDS)
 
 
 def judged_pieces(request: CutRequest) -> Verdict:
@@ -460,12 +485,8 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
     ExportError
         An unwritable place, a kind of file that pieces have none of, or one that did not pass its own re-reading.
     """
-    from kirigami_studio.export.assembly_files import KINDS, write_assembly
-    from kirigami_studio.export.print_files import KINDS as PRINTED
-    from kirigami_studio.export.print_files import write_print
     from kirigami_studio.studio.verdict import judge_assembled
 
-    kinds = PRINTED if is_printed(request.settings) else KINDS
     kind = output.path.suffix.lower()
     if output.name is None and kind and not kind_of(kind).cuts:
         from kirigami_studio.export.registry import export
@@ -473,28 +494,42 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
         place = export(replace(picture_job(request), picture_phi=picture_phi), output.path)
         made = pieces_of(request)
         return ExportedFiles(place, None, verdict=made.verdict, files=(place,), pieces=made)
+    pieces = pieces_of(request)
+
+    def judge(verifications: Sequence[Verification]) -> Verdict:
+        return judge_assembled(request.candidate, pieces.made, request.settings, verifications)
+
+    folder, found = _layers_written(pieces.job, output, judge, pieces.report.problems)
+    verified, verdict = found.verifications, judge(found.verifications)
+    return ExportedFiles(folder, None, verified, verdict=verdict, files=found.files, pieces=pieces)
+
+
+def _layers_written(
+    job: AssemblyJob | PrintJob,
+    output: Output,
+    judge: Callable[[Sequence[Verification]], Verdict],
+    problems: Sequence[Problem],
+) -> tuple[Path, AssemblyFiles]:
+    """Write the folder of a design in layers, and return it; its ``problems`` explain files that cannot be right."""
+    from kirigami_studio.export.assembly_files import KINDS, AssemblyJob, write_assembly
+    from kirigami_studio.export.print_files import KINDS as PRINTED
+    from kirigami_studio.export.print_files import write_print
+
+    kinds = KINDS if isinstance(job, AssemblyJob) else PRINTED
+    kind = output.path.suffix.lower()
     if output.name is None and kind not in ("", ".pdf", *kinds):
         raise ExportError("pieces.no_such_file", extension=kind, known=", ".join((".pdf", *kinds)))
-    pieces = pieces_of(request)
     wanted = (kind,) if output.name is None and kind in kinds else kinds
     folder = output.path.with_suffix("") if output.name is None else output.path
-
-    def level(verifications: Sequence[Verification]) -> str:
-        return judge_assembled(request.candidate, pieces.made, request.settings, verifications).level.value
-
     try:
-        if pieces.printing is not None:
-            found = write_print(pieces.printing, folder, wanted, level)
-        else:
-            assert pieces.cutting is not None  # one of both
-            found = write_assembly(pieces.cutting, folder, wanted, level)
+        if isinstance(job, AssemblyJob):
+            return folder, write_assembly(job, folder, wanted, lambda read: judge(read).level.value)
+        return folder, write_print(job, folder, wanted, lambda read: judge(read).level.value)
     except ExportError as error:
-        broken = next((one for one in pieces.report.problems if one.severity is Severity.ERROR), None)
+        broken = next((one for one in problems if one.severity is Severity.ERROR), None)
         if broken is None:
             raise
         raise ExportError("export.cannot_be_cut", reason=broken.text) from error
-    verdict = judge_assembled(request.candidate, pieces.made, request.settings, found.verifications)
-    return ExportedFiles(folder, None, found.verifications, verdict=verdict, files=found.files, pieces=pieces)
 
 
 _PLANS: OrderedDict[tuple[object, ...], Planned] = OrderedDict()
@@ -513,7 +548,9 @@ def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
     settings = request.settings
     name = request.name if settings.engrave else ""
     # The target, because what a trim keeps takes no part in comparisons.
-    key = (request.candidate, request.target, settings, material_for(settings), machine_for(settings), name)
+    layers = [hinge_layer(settings), *([board_layer(settings)] if is_backed(settings) else [])]
+    figures = [(material_for(cut), machine_for(cut)) for cut in layers]
+    key = (request.candidate, request.target, settings, *figures, name)
     made = _PLANS.pop(key, None) or _planned_anew(request, cancel)
     _PLANS[key] = made
     while len(_PLANS) > MOST_PLANS:
@@ -522,16 +559,51 @@ def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
 
 
 def _planned_anew(request: CutRequest, cancel: Cancel) -> Planned:
-    from kirigami_studio.fabricate.checks import check_plan
+    from kirigami_studio.export.strokes import total_work
+    from kirigami_studio.studio.backing import checked_plan
     from kirigami_studio.studio.cutting import plan_of
     from kirigami_studio.studio.verdict import judge
 
     candidate, trim = request.candidate, request.candidate.trim
     plan = plan_of(candidate, request.settings, request.deployment, cancel, request.name)
-    report = check_plan(plan, phi=candidate.final_phi)
+    report, backing = checked_plan(candidate, plan, request.deployment, request.settings)
     _ = plan.times  # worked out once and kept: here, so that the window need not
     removed = 0.0 if trim is None else trim.removed_share
-    return Planned(plan, report, judge(candidate, plan, report, None), removed, _work(plan, request.settings.profile))
+    layers = None if backing is None else _layers_job(request, backing)
+    verdict = judge(candidate, plan, report, None)
+    work = _work(plan, request.settings.profile) if layers is None else total_work(layers.all_works)
+    return Planned(plan, report, verdict, removed, work, layers)
+
+
+def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:
+    """The files of a backed design."""
+    from kirigami_studio.export.assembly_files import AssemblyJob
+    from kirigami_studio.export.backed_files import Glued
+    from kirigami_studio.project.store import packed_design
+
+    settings, sheet, target = request.settings, backing.sheet, None
+    if request.target is not None:
+        target = request.candidate.final_pose.inverse().apply(request.target.points) * sheet.cell_mm
+    return AssemblyJob(
+        sheet.assembly,
+        backing.material,
+        backing.machine,
+        settings.fastener,
+        backing.kerf_mm,
+        backing.jig.pin_mm,
+        0.0,
+        0.0,
+        Construction.BACKED,
+        name=request.name,
+        profile=settings.profile,
+        dxf_version=settings.dxf_version,
+        paper=settings.paper,
+        order=settings.options.order,
+        target=target,
+        provenance=request.facts,
+        record=b"" if request.document is None else packed_design(request.document, request.candidate),
+        glued=Glued(sheet, backing.board, backing.material, backing.jig.cut),
+    )
 
 
 def _work(plan: CutPlan, profile: str) -> Work | None:
@@ -579,7 +651,7 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
     job = ExportJob.of(request.candidate, target, None if made is None else made.plan)
     machine = machine_for(request.settings) if made is not None else None
     bed = machine.reach_mm if machine is not None and machine.kind is MachineKind.PRINTER else (0.0, 0.0)
-    if made is not None and (request.settings.construction is Construction.BACKED or made.plan.material.backing):
+    if made is not None and (made.layers is not None or made.plan.material.backing):
         tiles = TileSizes(request.settings.gap_mm)
         job = replace(job, printing=Printing(PrintForm.TILES, tile_sizes=tiles, bed_mm=bed))
     elif any(bed):
@@ -653,6 +725,16 @@ def written(
     ExportError
         An unknown extension, an unwritable place, or a file that did not pass its own re-reading.
     """
+    if made.layers is not None and writes_layers(request, output):
+        if broken := next((one for one in made.report.problems if one.code in NO_BOARD), None):
+            raise ExportError("export.cannot_be_cut", reason=broken.text)
+
+        def judge(verifications: Sequence[Verification]) -> Verdict:
+            return judged(request, made, as_cut, verifications)
+
+        folder, layers = _layers_written(made.layers, output, judge, made.report.problems)
+        read = layers.verifications
+        return ExportedFiles(folder, made, read, verdict=judge(read), files=layers.files)
     from kirigami_studio.export.export_set import export_all, placed
     from kirigami_studio.export.provenance import sidecar_path, write_sidecar
     from kirigami_studio.export.registry import export_files
@@ -696,10 +778,10 @@ def exporting(
     from kirigami_studio.export.registry import export, find_writer
 
     path = output.path
-    if request.is_pinned and writes_pieces(output):
+    if request.is_pinned and writes_layers(request, output):
         yield written_pieces(request, output)
         return
-    if output.name is None:
+    if output.name is None and not writes_layers(request, output):
         find_writer(path)  # an unknown kind is refused before anything is planned
         if not kind_of(path.suffix).cuts:
             yield ExportedFiles(export(picture_job(request), path), None)
@@ -900,11 +982,7 @@ def timing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[TimedDe
         try:
             if is_printed(request.settings):
                 continue  # the slicer knows
-            if request.is_pinned:
-                seconds = pieces_of(request).seconds
-            else:
-                made = planned(request, cancel)
-                seconds = (made.plan.times if made.work is None else made.work.times).total
+            seconds = (pieces_of(request) if request.is_pinned else planned(request, cancel)).seconds
         except (FabricationError, UsageError):
             continue  # which planning explains once it is chosen
         yield TimedDesign(request.candidate, request.settings, seconds)
@@ -916,7 +994,7 @@ def estimating(
     """Estimate whether designs close, each as it would be cut, a few at a time; all are of one material."""
     from kirigami_studio.studio.as_cut import estimate
 
-    material = material_for(designs[0][2])
+    material = sheet_material(designs[0][2])
     for start in range(0, len(designs), AT_ONCE):
         found = []
         for candidate, deployment, settings in designs[start : start + AT_ONCE]:

@@ -14,7 +14,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, TypeVar
 
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.fabricate.checks import PlanReport, check_plan
+from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
 from kirigami_studio.fabricate.material import Material
@@ -36,6 +36,7 @@ from kirigami_studio.studio.as_cut import (
     simulate,
 )
 from kirigami_studio.studio.assembling import Assembled, assembled, beyond_the_bed
+from kirigami_studio.studio.backing import checked_plan
 from kirigami_studio.studio.cutting import plan_of
 
 if TYPE_CHECKING:
@@ -48,7 +49,15 @@ STRAIN_FIELDS = ("strain_percent", "limit_percent", "material", "why")
 #: Warnings of that check that mean that the sheet does not survive.
 FATAL = frozenset({"plan.material_does_not_hold", "plan.material_needs_backing"})
 #: Findings about panels smaller than the material needs.
-TOO_SMALL = frozenset({"plan.panel_edge_small", "plan.panel_neck_small", "plan.trimmed_neck_small"})
+TOO_SMALL = frozenset(
+    {
+        "plan.panel_edge_small",
+        "plan.panel_neck_small",
+        "plan.trimmed_neck_small",
+        "backed.tile_narrow",
+        "backed.tiles_missing",
+    }
+)
 #: Notes of a plan that mean that a person does not get what was asked for.
 NOT_AS_ASKED = frozenset({"plan.connectors_narrowed"})
 #: Signs of a jam that count only where nobody has closed the sheet on its connectors.
@@ -345,7 +354,7 @@ def assess(
     motion = deploy(candidate.final_sheet) if deployment is None else deployment
     if planned is None:
         plan = plan_of(candidate, settings, motion)
-        planned = plan, check_plan(plan, phi=candidate.final_phi)
+        planned = plan, checked_plan(candidate, plan, motion, settings)[0]
     plan, report = planned
     as_cut = closed_as_cut(candidate, motion, plan, settings.width_mm, target)
     return Assessment(plan, report, as_cut, judge(candidate, plan, report, as_cut, verifications))
@@ -416,7 +425,10 @@ def looking(
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
     yield
-    report = check_plan(plan, phi=candidate.final_phi)
+    try:
+        report, _ = checked_plan(candidate, plan, motion, settings)
+    except KirigamiError as error:
+        return CloseLook(Note(error.code, error.fields))
     found = judge(candidate, plan, report, None)
     small = next((problem for problem in found.problems if problem.code in TOO_SMALL), None)
     if found.level is Level.FAILS or small is not None:

@@ -318,6 +318,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The file holds {count} piece; its record says {promised}. Export it again.",
         "The file holds {count} pieces; its record says {promised}. Export it again.",
     ),
+    "cut_file.registration_differs": mark(
+        "The record promises {promised} holes round the sheet; the file does not begin with them. Export it again."
+    ),
     "cut_file.narrower_than_recorded": mark(
         "Two cuts leave only {width_mm:.3f} mm of material between them; the narrowest connector was made "
         "{recorded_mm:.3f} mm wide."

@@ -343,6 +343,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{bed_height_mm:g} mm. Make the sheet less than {largest_mm:.1f} mm wide or set the bed of your machine."
     ),
     "construction.pinned": mark("{material}: made of two layers of pieces that turn on pins ({fastener})."),
+    "construction.backed": mark("Tiles of {board} are glued on a hinge layer of {hinge}."),
     "construction.printed": mark(
         "{material}: pieces and their pins are printed at once and turn on each other, without support or assembly."
     ),
@@ -356,15 +357,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "plan.material_needs_backing": mark(
         "{material}: one sheet cannot close, its connectors break whatever their style and width. Tiles of it glued on "
-        "a hinge layer can (not built yet). For one sheet cut film, paper or polypropylene."
+        "a hinge layer can: choose that construction. For one sheet cut film, paper or polypropylene."
     ),
     "plan.material_is_hinge_layer": mark(
-        "{material} is a hinge layer: alone it is too limp for panels. Tiles to print for it are exported as .3mf or "
-        ".stl; glued on, they make it stiff."
+        "{material} is a hinge layer: alone it is too limp for panels. Tiles of board, or printed ones, glued on make "
+        "it stiff: choose that construction."
     ),
     "material.near_its_limit": mark(
         "{material}: one sheet closes only with large panels, because connectors narrower than {least_mm:g} mm break. "
-        "Tiles of it glued on a hinge layer close in any design (not built yet)."
+        "Tiles of it glued on a hinge layer close in any design."
     ),
     "strain.escapes": mark(
         "The sheet is {ratio:.2f} times as thick as the connector is wide, below {threshold:g}: it bends out of the "
@@ -431,6 +432,27 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "backed.pin_not_positive": mark("Registration holes must be a number of millimetres above 0, got {value!r:.40}."),
     "backed.pin_too_wide": mark(
         "Registration holes of {pin_mm:g} mm are too wide for a frame of {frame_mm:g} mm. Make the frame wider."
+    ),
+    "backed.cuts_merge": mark(
+        "A gap of {gap_mm:g} mm leaves nothing between the cuts of two tiles, whose kerf is {kerf_mm:g} mm. Make the "
+        "gap larger."
+    ),
+    "backed.tiles_missing": mark_n(
+        "{count} panel is too small for a tile: nothing stiffens it. Make the sheet larger or the gap smaller.",
+        "{count} panels are too small for tiles: nothing stiffens them. Make the sheet larger or the gap smaller.",
+    ),
+    "backed.tile_narrow": mark_n(
+        "{count} tile is narrower than {least_mm:g} mm: {piece} is {width_mm:.2f} mm wide at its narrowest place. "
+        "Make the sheet larger, or the gap or the connectors smaller.",
+        "{count} tiles are narrower than {least_mm:g} mm: {piece} is {width_mm:.2f} mm wide at its narrowest place. "
+        "Make the sheet larger, or the gap or the connectors smaller.",
+    ),
+    "backed.frame_larger_than_bed": mark(
+        "The frame round the tiles is {width_mm:.0f} x {height_mm:.0f} mm, more than the bed of {machine}. Make the "
+        "sheet smaller."
+    ),
+    "backed.kiss_cut": mark(
+        "Layer {layer} of the board is to be cut to the liner only: set its power or depth; all else is cut through."
     ),
     "printed.thickness_not_positive": mark(
         "The thickness of a print must be a number of millimetres above 0, got {value!r:.40}."

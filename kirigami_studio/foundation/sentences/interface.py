@@ -32,6 +32,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Widths of connectors are given by their numbers, as hinge_mm={{3: 0.8}}; got {value:.40}."
     ),
     "api.not_connectors": mark("Connectors are given by their numbers, as removed=[3, 7]; got {value:.40}."),
+    "api.no_pieces_on_pins": mark(
+        "A design of the construction {construction} has no pieces on pins: plan_cuts and export make its files."
+    ),
     "api.not_a_project_name": mark("A project is saved as a {suffix} file; got {path}."),
     "api.no_such_name": mark("There is no design '{name:.40}'; there are {names:.80}."),
     "api.second_target_not_named": mark("Name the second target that the angle and the weight are for: also=TARGET."),

@@ -1,4 +1,4 @@
-"""Beds of a pinned design side by side, with pieces, holes and numbers."""
+"""Beds of a pinned design, or of tiles, side by side, with pieces, holes and numbers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from kirigami_studio.gui.widgets.canvas import Canvas
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
 if TYPE_CHECKING:
-    from kirigami_studio.studio.making import LaidBed, MadePieces
+    from kirigami_studio.studio.making import LaidBed
 
 #: Between two beds, in widths of a bed; height of a caption (pixels).
 BETWEEN, CAPTION = 0.06, 16.0
@@ -38,12 +38,12 @@ class BedsView(Canvas):
         self._room = (0.0, 0.0)
         self._places: list[FloatArray] = []
 
-    def show_pieces(self, made: MadePieces | None) -> None:
-        """Show other beds; None shows nothing."""
-        self._beds = () if made is None else made.beds
-        if made is not None:
-            self._look = made.posed.look
-            self._room = made.job.machine.reach_mm
+    def show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float], look: PieceLook) -> None:
+        """Show other beds, or none, of a machine that reaches so far (width, height; mm), as pieces look."""
+        self._beds = beds
+        if beds:
+            self._look = look
+            self._room = room
             if min(self._room) <= 0.0:  # a hand has no bed
                 self._room = tuple(np.max([bed.size_mm for bed in self._beds], axis=0).tolist())
         columns = max(1, round(len(self._beds) ** 0.5))

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from kirigami_studio.assembly.posed_pieces import PieceLook
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.make.beds_view import BedsView
@@ -26,10 +27,11 @@ from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import ToolButton
 from kirigami_studio.gui.widgets.readable import readable_length, readable_size, readable_time
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
+from kirigami_studio.studio.making import laid_beds
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
-    from kirigami_studio.studio.making import MadePieces, Planned
+    from kirigami_studio.studio.making import LaidBed, MadePieces, Planned
 
 #: Seconds in which a whole job is played, however long it takes to cut.
 PLAY_SECONDS = 12.0
@@ -122,16 +124,29 @@ class CutsPage(QWidget):
     def show_pieces(self, made: MadePieces | None) -> None:
         """Show the beds of a pinned design in the place of a plan; None shows the plan again."""
         self._pieces = made
-        self.beds.show_pieces(made)
-        self.beds.setVisible(made is not None)
+        if made is None:
+            self._show_beds((), (0.0, 0.0), PieceLook())
+        else:
+            self._show_beds(made.beds, made.job.machine.reach_mm, made.posed.look)
         for part in (self.view, self.hinges, self.bar):
             part.setVisible(made is None)
         if made is not None:
             self.problems.show_problems(made.report.problems)
 
+    def _show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float], look: PieceLook) -> None:
+        self.beds.show_beds(beds, room, look)
+        self.beds.setVisible(bool(beds))
+
     def show_plan(self, planned: Planned | None) -> None:
-        """Show another plan, or the empty state; a new picture of one sheet keeps its place."""
+        """Show another plan, or the empty state; a new picture of one sheet keeps its place.
+
+        The board of a backed design lies below its hinge layer.
+        """
         self.show_pieces(None)
+        if planned is not None and planned.layers is not None:
+            job = planned.layers
+            look = PieceLook.of(job.material, job.fastener, in_one_plane=False)
+            self._show_beds(laid_beds(job), job.machine.reach_mm, look)
         plan = None if planned is None else planned.plan
         problems = () if planned is None else planned.report.problems
         new_sheet = self._plan is None or plan is None or self._plan.copies.spread_mm != plan.copies.spread_mm

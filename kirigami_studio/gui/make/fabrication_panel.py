@@ -5,6 +5,7 @@ The row with the material is made here; the window puts it above the settings th
 
 from __future__ import annotations
 
+from contextlib import suppress
 from enum import Enum
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from kirigami_studio.fabricate.machine import USUAL, MachineKind
 from kirigami_studio.fabricate.material import PRINTER
+from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.make.export_row import ExportRow
 from kirigami_studio.gui.make.machine_chooser import MachineChooser
@@ -42,6 +44,7 @@ from kirigami_studio.gui.widgets.readable import (
     readable_time,
 )
 from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, is_printed
+from kirigami_studio.settings.layers import sheet_material
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -260,7 +263,9 @@ class FabricationPanel(Card):
 
     def show_settings(self, settings: FabricationSettings) -> None:
         """Show the document's numbers, the material's own where it has none."""
-        material = self.chooser.show_settings(settings)
+        chosen = material = self.chooser.show_settings(settings)
+        with suppress(FabricationError):  # a material is gone, which the plan tells
+            material = sheet_material(settings)  # connectors are those of the hinge layer
         shown = {
             "width_mm": settings.width_mm,
             "connector_mm": settings.connector_mm or (material.connector_mm if material else 0.0),
@@ -270,7 +275,7 @@ class FabricationPanel(Card):
         self.construction.choose(settings.construction)
         self.lengths["connector_mm"].setEnabled(not is_pinned(settings))
         self.options.show_settings(settings)
-        extension = ".pdf" if material is not None and material.by_hand else ".dxf"
+        extension = ".pdf" if chosen is not None and chosen.by_hand else ".dxf"
         if settings.machine:
             extension = self.chooser.wanted_file or extension
         if is_printed(settings) or (material is not None and material.machine == PRINTER):
@@ -287,14 +292,17 @@ class FabricationPanel(Card):
         plan, report = planned.plan, planned.report
         copies = len(plan.copies)
         length, times = plan.cut_length_mm, plan.times
+        pieces = f"{copies * report.pieces}"
         if planned.work is not None:
             length, times = planned.work.cut_length_mm, planned.work.times
+        if planned.layers is not None:
+            pieces = tr("{pieces} + {tiles} tiles", pieces=report.pieces, tiles=len(planned.layers.assembly.pieces))
         texts = {
             "size": readable_size(*plan.size_mm),
             "slits": f"{copies * len(plan.paths)}",
             "length": readable_length(length),
             "time": readable_range(times.low, times.high),
-            "pieces": f"{copies * report.pieces}",
+            "pieces": pieces,
             "ligament": tr("{width_mm:.2f} mm", width_mm=report.min_ligament_mm),
         }
         for key, text in texts.items():
@@ -444,7 +452,11 @@ def format_slots(planned: Planned) -> str:
     """Return the cost of slots, where the machine profile asks for them."""
     open_mm = len(planned.plan.copies) * planned.plan.cut_length_mm
     # Copies alone leave the length of every cut as it is.
-    if planned.work is None or abs(planned.work.cut_length_mm / open_mm - 1.0) < SAME_LENGTH:
+    if (
+        planned.work is None
+        or planned.layers is not None
+        or abs(planned.work.cut_length_mm / open_mm - 1.0) < SAME_LENGTH
+    ):
         return ""
     return tr(
         "Closed slots: {factor:.2f} times the open cut length of {length}.",

@@ -14,10 +14,10 @@ from kirigami_studio.settings.fabrication import (
     machine_changes,
     machine_for,
     material_changes,
-    note_on,
     stored_machine,
     stored_material,
 )
+from kirigami_studio.settings.layers import note_on
 
 #: In the place of a machine: the one that the material is for.
 USUAL = mark("Usual for the material")

@@ -9,7 +9,8 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QMenu, Q
 from kirigami_studio.fabricate.machine import Machine, MachineKind, cuttable, machines
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation.words import mark, tr
-from kirigami_studio.settings.fabrication import FabricationSettings, note_on
+from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.settings.layers import note_on
 
 #: Kinds of machines in the order in which they are offered, with their names on the buttons.
 KINDS = (

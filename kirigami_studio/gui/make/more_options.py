@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.hold import HoldKind
-from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.fabricate.material import Construction, library
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
@@ -38,6 +38,9 @@ class MoreOptions(QWidget):
         profiles = [(key, one.name, one.note.text if one.note else "") for key, one in PROFILES.items()]
         self.profile = self.files.choice("profile", profiles)
         self.dxf_version, self.paper = self.files.choice("dxf_version"), self.files.choice("paper")
+        materials = [(key, tr(one.name), "") for key, one in library().items.items()]
+        usual = ("", tr("As suits the material"), tr("Cotton for a board, card for a soft sheet."))
+        self.files.choice("second_material", [usual, *sorted(materials, key=lambda one: one[1].casefold())])
         self.markers, self.engrave = self.files.switch("markers"), self.files.switch("engrave")
         self.rows = ElidedLabel()
         self.rows.setObjectName("muted")
@@ -70,8 +73,9 @@ class MoreOptions(QWidget):
         marks.addWidget(self.engrave)
         marks.addWidget(self.markers)
         table.addLayout(marks, 4, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
+        table.addLayout(files("second_material"), 5, 0, 1, 4)
         elsewhere = ("width_mm", "connector_mm", "kerf_mm", "construction")  # above, in the panel
-        for line, row in enumerate([*self.cuts.remaining(), *self.files.remaining(elsewhere)], 5):
+        for line, row in enumerate([*self.cuts.remaining(), *self.files.remaining(elsewhere)], 6):
             table.addLayout(row, line, 0, 1, 4)
         for column in range(4):
             table.setColumnStretch(column, 1)
@@ -111,7 +115,8 @@ class MoreOptions(QWidget):
             self.files.fields[name].setEnabled(pinned and settings.held_by is HoldKind.MAGNETS)
         for name in ("pin_mm", "ear_mm", "clearance_mm"):
             self.files.fields[name].setEnabled(pinned or construction is Construction.PRINTED)
-        self.files.fields["gap_mm"].setEnabled(construction is Construction.BACKED)
+        for name in ("gap_mm", "second_material", "board_cut"):
+            self.files.fields[name].setEnabled(construction is Construction.BACKED)
 
     def _show_content(self, shown: bool) -> None:
         self.content.setVisible(shown)

@@ -12,6 +12,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QMouseEvent, QPaintEngine, QPainter
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.assembly.posed_pieces import PieceLook, PosedPieces
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.second_target import SecondMatch
@@ -71,7 +72,7 @@ from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
-    from kirigami_studio.assembly.posed_pieces import PosedPieces
+    from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.export.cut_motion import CutPose
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.studio.as_cut import SimulatedSheet
@@ -161,6 +162,7 @@ class LayoutView(Canvas):
         self._made: tuple[SimulatedSheet, PosedDesign] | None = None  #: the sheet as cut over its target
         self.artwork: ShownArtwork | None = None
         self._pieces: PosedPieces | None = None
+        self._tiles: PosedPieces | None = None  #: on the panels of a hinge layer
         self._grips = GRIPS_UNKNOWN
         self.overstretched = 0  #: connectors of the last painted picture stretched by more than they tolerate
         self.areas: Mismatch | None = None  #: missing and extra area of the last painted picture
@@ -186,7 +188,8 @@ class LayoutView(Canvas):
         ``second`` is how this very sheet shows a second target.
         """
         self.design, self._target, self._cut, self.second = design, target, None, None
-        self.areas, self._ideal_areas, self.faults, self._pieces = None, None, (), None
+        self.areas, self._ideal_areas, self.faults = None, None, ()
+        self._pieces = self._tiles = None
         before, self._bounds = self._bounds, None
         if design is not None:
             self._rigid = RigidFacts.of(design)
@@ -208,7 +211,8 @@ class LayoutView(Canvas):
 
     def show_draft(self, design: PosedDesign) -> None:
         """Show a design that is being edited by hand, without fitting the view again."""
-        self.design, self._cut, self.second, self._pieces = design, None, None, None
+        self.design, self._cut, self.second = design, None, None
+        self._pieces = self._tiles = None
         self.areas, self._ideal_areas, self.faults, self._contact = None, None, (), None
         self._rigid = RigidFacts.of(design)
         self.update()
@@ -224,6 +228,16 @@ class LayoutView(Canvas):
         self._pieces = None if self.design is None else pieces
         if self._pieces is not None and self._bounds is not None:
             self._bounds = self._bounds.united(Bounds.of(self._pieces.extent))
+        self.update()
+
+    def show_tiles(self, layers: AssemblyJob | None) -> None:
+        """Draw the tiles of a backed design on its panels, or panels alone again."""
+        self._tiles = None
+        if layers is not None and self.design is not None:
+            made, design = layers.assembly.deployment, self.design
+            look = PieceLook.of(layers.material, layers.fastener, in_one_plane=False)
+            posed = design if made is design.deployment else design.laid_over(made)
+            self._tiles = PosedPieces(layers.assembly, posed, look, 0.0, ())
         self.update()
 
     def set_as_cut(self, on: bool) -> None:
@@ -404,6 +418,8 @@ class LayoutView(Canvas):
             paint_panels(painter, panels, turning, palette, trimmed)
         else:
             paint_cut_panels(painter, pose, transform, panels, turning, palette)
+        if self._tiles is not None:
+            paint_pieces(painter, self._tiles, self.phi if pose is None else pose.phi, transform, self.palette_)
         if artwork is not None:
             paint_artwork(painter, artwork, self.phi, panels, trimmed, transform)
         self._paint_voids(painter, transform, nodes)

@@ -30,7 +30,7 @@ from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.preferences import MotionPreference, TypedSize
-from kirigami_studio.settings.fabrication import note_before_run
+from kirigami_studio.settings.layers import note_before_run
 from kirigami_studio.studio.projects import Pair, reading_sample
 
 #: Seconds from flat to open and back: slower than a design is played, so that it draws no eye from the work.

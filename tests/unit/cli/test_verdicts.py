@@ -52,6 +52,7 @@ def test_that_an_export_answers_with_the_verdict_that_its_record_has(
     assert good["ok"] and good["verdict"]["level"] == "ready_to_cut" and good["verdict"]["problems"] == []
     assert json.loads((tmp_path / "set" / "cut.json").read_text())["verdict"] == good["verdict"]
     straight = ("--style", "straight", "--material", "felt-co2", "--width-mm", "200", "--connector-mm", "0.6")
+    straight += ("--construction", "one-sheet")
     bad = answer(capsys, "export", project, "--out", tmp_path / "one.dxf", *straight, "--sidecar", "--json")
     assert not bad["ok"] and bad["verdict"]["level"] == "will_not_work"
     assert {"as_cut.breaks", "as_cut.jams_stretched"} <= {problem["code"] for problem in bad["verdict"]["problems"]}

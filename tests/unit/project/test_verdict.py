@@ -16,7 +16,7 @@ from kirigami_studio.export.registry import export
 from kirigami_studio.export.verification import Finding, Verification, verify_export
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
-from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.fabricate.material import Construction, find_material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.errors import FabricationError
@@ -90,7 +90,8 @@ def test_that_a_sheet_without_problems_is_ready_to_cut(
 
 
 def test_that_a_stiff_sheet_which_jams_will_not_work(design: Candidate) -> None:
-    felt = FabricationSettings(material="felt-co2", width_mm=200.0, connector_mm=0.6, options=STRAIGHT)
+    one_sheet = {"construction": Construction.ONE_SHEET, "width_mm": 200.0, "connector_mm": 0.6}
+    felt = FabricationSettings(material="felt-co2", **one_sheet, options=STRAIGHT)
     found = assess(design, felt).verdict
     assert found.level is Level.FAILS and not found.ok
     assert "as_cut.jams_stretched" in codes(found)
