@@ -131,7 +131,7 @@ class Shaping:
         return made
 
     def _begin(self, blanks: GeometryArray, known: dict[_Notching, _Notched]) -> None:
-        """Cut the notches into panels; where they would cut a piece through, straps go, then ears get smaller.
+        """Cut the notches; straps that cut a piece through go, then ears become smaller.
 
         Panels that have the same ears, and are passed by the same ones, as one in ``known`` are cut as that.
         """
@@ -159,14 +159,14 @@ class Shaping:
         for ear in np.unique(self._straps.ear).tolist():
             own = discs(self._straps.centre[self._straps.ear == ear], self._straps.radius)
             plane = int(motion.plane[ear // 4])
-            parts = _convex_parts(shapely.union_all(own).convex_hull)
-            self._parts[plane] = self._parts[plane].with_more(ear // 4, parts)
+            hull: Polygon = shapely.union_all(own).convex_hull
+            self._parts[plane] = self._parts[plane].with_more(ear // 4, _convex_parts(hull))
         for index, one in enumerate(notched):
             self._find_weak(index, self._most_pinned(index, one.shape) if one.held is None else one.held)
             self.bodies[index] = self._held_narrowly(index, one.shape) if one.held is None else one.held
 
     def _notching(self, index: int, movers: IntArray) -> _Notching:
-        """All that the notches of a panel depend on: its own ears, those that pass it, and their straps."""
+        """Key of the notches of a panel: its own ears, those that pass it, and their straps."""
         radius = self.ear_radius.ravel()
         own = np.flatnonzero(self.motion.hinged[index]) + 4 * index
         straps = self._straps.centre[np.isin(self._straps.ear, np.concatenate([own, movers]))]
@@ -399,7 +399,7 @@ class _Straps:
 
     @classmethod
     def of(cls, motion: LayerMotion, options: PinOptions) -> _Straps:
-        """Straps of all corners with pins that need one; none in a single plane, where partners turn beside them."""
+        """Straps of all corners that need one; none in a single plane, where partners turn."""
         before, after = (np.roll(motion.corners, way, axis=1) - motion.corners for way in (1, -1))
         half = 0.5 * np.abs(np.angle(before / after))
         radius = 0.5 * options.neck_mm + STRAP_MORE
@@ -416,7 +416,7 @@ class _Straps:
         return cls(ear, motion.corners.ravel()[ear] + along * np.repeat(inwards, steps), radius)
 
     def clear_of_walls(self, motion: LayerMotion, options: PinOptions, mover: IntArray, seen: IntArray) -> _Straps:
-        """Those discs whose notches leave the walls of all pins that they may pass; see :meth:`passing`."""
+        """Those discs whose notches leave the walls of all pins beside; see :meth:`passing`."""
         number, passed = self.passing(mover, seen)
         number, panel = np.repeat(number, 4), np.repeat(passed, 4)
         pins = motion.corners[passed].ravel()
@@ -430,7 +430,7 @@ class _Straps:
         return _Straps(self.ear[chosen], self.centre[chosen], self.radius)
 
     def passing(self, mover: IntArray, seen: IntArray) -> tuple[IntArray, IntArray]:
-        """Discs (numbers), and the panels that they may touch, of ears and the panels that these may."""
+        """Numbers of discs, and the panels that they may touch, from those of ears."""
         order = np.argsort(mover, kind="stable")
         first, last = (np.searchsorted(mover[order], self.ear, side=side) for side in ("left", "right"))
         pairs = [order[one:other] for one, other in zip(first, last, strict=True)]

@@ -93,7 +93,7 @@ def pin_distances(nodes: FloatArray, rows: int, columns: int) -> PinDistances:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NotchNecks:
-    """Necks that notches leave in panels, between two of them, and between one and another side of the panel.
+    """Necks of panels between two notches, and between a notch and another side.
 
     Each is listed as the distance of the middles of ears that leaves as much: see :data:`TO_A_SIDE`.
     """
@@ -120,7 +120,7 @@ class NotchNecks:
 
 
 def notch_necks(nodes: FloatArray, rows: int, columns: int) -> NotchNecks:
-    """Measure the necks beside all notches of an m x n grid with compact ``nodes`` (N, 2), unit cells.
+    """Measure the necks beside all notches of an m x n grid with compact ``nodes`` (N, 2).
 
     They are those on whose both sides a panel has pins.
     """

@@ -1,4 +1,4 @@
-"""Room for pins: distances between them, necks beside the notches of their ears, and corners that ears hang on."""
+"""Room for pins: distances between them, necks beside notches, and corners of panels."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SHARPEST = math.sin(math.radians(22.0))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PinRoom:
-    """What pins have of the room that they need, unit cells; sines of corners count as much."""
+    """Room of pins beyond their need, unit cells; sines of corners count as much."""
 
     spare: FloatArray  #: (F,); by how much each is larger than asked for
     _parts: tuple[PinDistances | NotchNecks | JunctionAngles, ...]
