@@ -302,7 +302,7 @@ def stroked(lines: Sequence[FloatArray], pen: StrokeStyle, width: float) -> Base
     if join == "mitre":
         found = [_mitres(line, 0.5 * width, pen.mitre_limit) for line in lines]
         if any(is_cut for _, is_cut in found):  # GEOS would cut those off at the limit, SVG and DXF at the corner
-            join, tips = "bevel", list(shapely.polygons(np.concatenate([tip for tip, _ in found])))
+            join, tips = "bevel", [Polygon(tip) for tip in np.concatenate([tips for tips, _ in found])]
     limit = max(pen.mitre_limit, 1.0)
     painted = shapes.buffer(0.5 * width, quad_segs=QUARTER, cap_style=pen.cap, join_style=join, mitre_limit=limit)
     return shapely.union_all([painted, *tips]) if tips else painted
