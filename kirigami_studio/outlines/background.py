@@ -273,7 +273,7 @@ def _fitted(terms: FloatArray, seen: FloatArray) -> tuple[FloatArray, BoolArray]
         if not good.any():
             good = off <= np.median(off)
     follows: BoolArray = off <= SAME_CORNERS
-    return model, follows
+    return np.asarray(model, dtype=np.float64), follows
 
 
 def _leaves(model: FloatArray, seen: FloatArray) -> bool:
@@ -355,7 +355,8 @@ def _reduced(colours: FloatArray) -> FloatArray:
     height, width = (max(size // step, 1) for size in colours.shape[:2])
     blocks = colours[: height * step, : width * step]
     blocks = blocks[: blocks.shape[0] // height * height, : blocks.shape[1] // width * width]
-    return blocks.reshape(height, -1, width, blocks.shape[1] // width, colours.shape[2]).mean(axis=(1, 3))
+    squares = blocks.reshape(height, -1, width, blocks.shape[1] // width, colours.shape[2])
+    return np.asarray(squares.mean(axis=(1, 3)))
 
 
 def _page(distance: FloatArray, level: float, small: FloatArray) -> BoolArray | None:
