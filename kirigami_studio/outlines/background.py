@@ -245,7 +245,11 @@ def _ground(small: FloatArray, border: BoolArray) -> tuple[FloatArray, BoolArray
         ]
     )
     model, good = _fitted(terms, seen)
-    there = colours_in_lab(np.clip(_terms(*_corners(rows, columns).T, small.shape[:2]) @ model, 0.0, 1.0)[None])[0]
+    there = colours_in_lab(
+        np.clip(
+            _terms(_corners(rows, columns)[:, 0], _corners(rows, columns)[:, 1], small.shape[:2]) @ model, 0.0, 1.0
+        )[None]
+    )[0]
     fits = np.sum(np.linalg.norm(corners - there, axis=1) <= 2.0 * SAME_GROUND)
     if np.mean(good) < EXPLAINED or fits < CORNERS or _leaves(model, seen[good]):
         centre = _colour_of_corners(corners, lab)
@@ -268,7 +272,8 @@ def _fitted(terms: FloatArray, seen: FloatArray) -> tuple[FloatArray, BoolArray]
         good = off <= np.clip(2.5 * float(np.median(off)), SAME_GROUND, SAME_CORNERS)
         if not good.any():
             good = off <= np.median(off)
-    return model, off <= SAME_CORNERS
+    follows: BoolArray = off <= SAME_CORNERS
+    return np.asarray(model, dtype=np.float64), follows
 
 
 def _leaves(model: FloatArray, seen: FloatArray) -> bool:
@@ -315,12 +320,12 @@ def _terms(rows: IntArray, columns: IntArray, shape: tuple[int, ...], order: int
 def _evaluated(model: FloatArray, shape: tuple[int, ...]) -> FloatArray:
     """Colour (H, W, C) of the ground at every pixel."""
     rows, columns = np.mgrid[: shape[0], : shape[1]]
-    return np.clip(_terms(rows, columns, shape, ORDER_OF[len(model)]) @ model, 0.02, 1.0)
+    return np.asarray(np.clip(_terms(rows, columns, shape, ORDER_OF[len(model)]) @ model, 0.02, 1.0))
 
 
 def _mean(model: FloatArray) -> FloatArray:
     """Mean colour (C,) of the ground."""
-    return np.clip(model[0] + (model[3] + model[5]) / 3.0, 0.0, 1.0)
+    return np.asarray(np.clip(model[0] + (model[3] + model[5]) / 3.0, 0.0, 1.0))
 
 
 def _distance(colours: FloatArray, model: FloatArray, uneven: bool) -> FloatArray:
@@ -334,7 +339,7 @@ def _distance(colours: FloatArray, model: FloatArray, uneven: bool) -> FloatArra
 
 
 def _norm(differences: FloatArray) -> FloatArray:
-    return np.sqrt(np.sum(differences * differences, axis=-1)).astype(np.float64)
+    return np.asarray(np.sqrt(np.sum(differences * differences, axis=-1)), dtype=np.float64)
 
 
 def colours_in_lab(colours: FloatArray) -> FloatArray:
@@ -350,7 +355,8 @@ def _reduced(colours: FloatArray) -> FloatArray:
     height, width = (max(size // step, 1) for size in colours.shape[:2])
     blocks = colours[: height * step, : width * step]
     blocks = blocks[: blocks.shape[0] // height * height, : blocks.shape[1] // width * width]
-    return blocks.reshape(height, -1, width, blocks.shape[1] // width, colours.shape[2]).mean(axis=(1, 3))
+    squares = blocks.reshape(height, -1, width, blocks.shape[1] // width, colours.shape[2])
+    return np.asarray(squares.mean(axis=(1, 3)))
 
 
 def _page(distance: FloatArray, level: float, small: FloatArray) -> BoolArray | None:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import ImageOps
@@ -127,6 +128,7 @@ def _looked(content: bytes) -> _Looked:
     """A picture, reduced; the last one is kept while it is clicked on."""
     image = ImageOps.exif_transpose(opened_image(content))
     reduction = math.ceil(max(image.size) / SIDE)
+    seen: Any
     if image.mode.startswith(("I", "F")):
         deep = stretched(np.asarray(image.convert("F").reduce(reduction), dtype=np.float64))
         seen = deep[..., None].astype(np.float32)

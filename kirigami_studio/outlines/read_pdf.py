@@ -11,11 +11,12 @@ import threading
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pypdfium2
+import pypdfium2 as untyped_pypdfium2
 import pypdfium2.raw as untyped_pdfium
 from shapely.geometry import Polygon, box
 from shapely.geometry.base import BaseGeometry
@@ -33,6 +34,7 @@ from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_byte
 from kirigami_studio.outlines.svg_drawing import LEAST_SEEN, Drawn, Paint, SvgDrawing
 
 #: The library's calls carry no types.
+pypdfium2: Any = untyped_pypdfium2
 pdfium: Any = untyped_pdfium
 
 MM_PER_POINT = 25.4 / 72.0
@@ -134,7 +136,7 @@ class _Page:
             raise TargetError("svg.too_many_elements", elements=self.objects, limit=MOST_OBJECTS)
 
 
-def _drawing(document: pypdfium2.PdfDocument, budget: TimeBudget) -> SvgDrawing:
+def _drawing(document: Any, budget: TimeBudget) -> SvgDrawing:
     """What the first page shows, y down, mm."""
     page = document[0]
     left, bottom, right, top = page.get_cropbox(fallback_ok=True)
@@ -173,7 +175,7 @@ def _unfolded(
         if within.is_empty:
             continue
         if kind == pdfium.FPDF_PAGEOBJ_FORM:
-            inner: Callable[[int], Any] = lambda number, form=one: pdfium.FPDFFormObj_GetObject(form, number)  # noqa: E731
+            inner = partial(pdfium.FPDFFormObj_GetObject, one)
             inside = frame @ _matrix(one)
             yield from _unfolded(inner, pdfium.FPDFFormObj_CountObjects(one), inside, within, page, depth + 1)
         elif kind == pdfium.FPDF_PAGEOBJ_PATH:
@@ -250,7 +252,7 @@ def _clipped(one: Any, frame: FloatArray, outer: BaseGeometry, page: _Page) -> B
     for index in range(max(pdfium.FPDFClipPath_CountPaths(path), 0) if path else 0):
         count = max(pdfium.FPDFClipPath_CountPathSegments(path, index), 0)
         rings = _chains(
-            lambda number, index=index: pdfium.FPDFClipPath_GetPathSegment(path, index, number),
+            partial(pdfium.FPDFClipPath_GetPathSegment, path, index),
             count,
             frame,
             page,
