@@ -265,7 +265,7 @@ def planned_sheet(
     )
     if plan.tiles is not None:  # soft flanks give way: tiles alone run into each other
         connectors = replace(connectors, touch=np.minimum(connectors.touch, 0.0))
-        bows = _meetings_of_tiles(connectors, plan, deployment, shift)
+        bows: Meetings | None = _meetings_of_tiles(connectors, plan, deployment, shift)
     else:
         bows = None if centres is None or on_nodes else _meetings(connectors, plan, deployment, shift)
     young = plan.material.young_gpa if young_gpa is None else young_gpa
