@@ -274,9 +274,7 @@ def test_that_beds_of_other_designs_and_beds_given_twice_are_refused(pinwheel: D
     assert [problem.code for problem in twice[0].verdict.problems] == ["check.bed_twice"]
 
 
-def test_that_a_close_look_ends_where_a_piece_falls_apart(
-    pinwheel: Document, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_that_a_close_look_ends_where_a_piece_falls_apart(pinwheel: Document, monkeypatch: pytest.MonkeyPatch) -> None:
     large = replace(pinwheel.fabrication, ear_mm=24.0, pin_mm=8.0)
     (problem, *_) = pieces_of(CutRequest.of(pinwheel, large)).verdict.problems
     assert problem.code == "pinned.falls_apart"
