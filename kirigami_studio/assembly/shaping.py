@@ -250,7 +250,7 @@ class Shaping:
         return swept_discs(motion.corners.ravel()[ear], drift, turn, radius, NOTCH_TOLERANCE)
 
     def _sweeps(self, index: int) -> tuple[IntArray, GeometryArray]:
-        """Ears that may touch a panel, as flat indices of corners, and the areas (K, 3) that they sweep past it."""
+        """Ears that may touch a panel, as flat indices of corners, and their sweeps (K, 3)."""
         if index not in self._swept:
             mover, seen = self._passing_ears
             mover = mover[seen == index]
