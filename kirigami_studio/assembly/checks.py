@@ -175,7 +175,7 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
 def bed_problems(
     assembly: Assembly, bed: tuple[float, float], kerf_mm: float, width_mm: float, fixed_mm: float
 ) -> list[Problem]:
-    """Warn about pieces that a machine cannot reach all of, whichever way round they lie; several beds are no problem.
+    """Warn about pieces that lie on no bed of a machine; several beds are no problem.
 
     Parameters
     ----------

@@ -168,7 +168,7 @@ def freedom(motion: LayerMotion) -> int:
 
 
 def _conditions(motion: LayerMotion) -> tuple[IntArray, FloatArray]:
-    """Nodes (N,) with pins in ascending order, and the conditions (2 N, 3 P) that they put to shifts and turns."""
+    """Nodes (N,) with pins, ascending, and their conditions (2 N, 3 P) on shifts and turns."""
     turn = 0.5 * motion.opening
     drift, spin = motion.drift[:, None], np.exp(1j * motion.sense * turn)[:, None]
     points = np.exp(-0.5j * motion.sense * turn)[:, None] * (motion.corners + (spin - 1.0) * drift)

@@ -23,7 +23,7 @@ ROUNDING_MM = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Overlap:
+class SharedArea:
     """Shapes that lie upon each other at a pose.
 
     Attributes
@@ -47,13 +47,13 @@ class Passing:
 
     Attributes
     ----------
-    overlaps : tuple of Overlap
+    overlaps : tuple of SharedArea
         In the order of the poses; none of poses at which nothing overlaps.
     looks : int
         How many times two shapes were compared.
     """
 
-    overlaps: tuple[Overlap, ...]
+    overlaps: tuple[SharedArea, ...]
     looks: int
 
 
@@ -68,7 +68,7 @@ def passing(shapes: Sequence[Polygon], poses: FloatArray) -> Passing:
         Shift x, shift y (mm) and turn (radians, counter-clockwise) of every shape: turned about its origin, then
         shifted.
     """
-    pairs = _Pairs.of(np.array(shapes, dtype=object), poses)
+    pairs = _PassingPairs.of(np.array(shapes, dtype=object), poses)
     pair: IntArray = np.arange(len(pairs.one))
     first, last = np.zeros(len(pair), dtype=np.int64), np.full(len(pair), len(poses))
     met: list[tuple[IntArray, IntArray]] = []
@@ -91,7 +91,7 @@ def passing(shapes: Sequence[Polygon], poses: FloatArray) -> Passing:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Pairs:
+class _PassingPairs:
     """Pairs of shapes whose circles meet at some pose, the second seen from the first.
 
     Attributes
@@ -117,7 +117,7 @@ class _Pairs:
     circles_meet: BoolArray
 
     @classmethod
-    def of(cls, shapes: GeometryArray, poses: FloatArray) -> _Pairs:
+    def of(cls, shapes: GeometryArray, poses: FloatArray) -> _PassingPairs:
         """All pairs that need a look."""
         points, owner = shapely.get_coordinates(shapes, return_index=True)
         left, bottom, right, top = shapely.bounds(shapes).T
@@ -143,7 +143,7 @@ class _Pairs:
         )
 
     def farthest_moved(self, pair: IntArray, middle: IntArray, poses: IntArray) -> FloatArray:
-        """How far (N,) any point of the second shape is at most from its place at a pose (N,), at others (N, L); mm."""
+        """Bound (N,), mm, on the moves of the second shape from a pose (N,) to others (N, L)."""
         column = pair[:, None]
         shifted = np.abs(self.centre[poses, column] - self.centre[middle, pair][:, None])
         turned = np.abs(self.turn[poses, column] - self.turn[middle, pair][:, None])
@@ -159,9 +159,10 @@ class _Pairs:
 
     def within(self, pair: IntArray, pose: IntArray, distance: FloatArray) -> BoolArray:
         """Whether shapes are within a distance (N,), mm, at a pose."""
-        return np.asarray(shapely.dwithin(self.shapes[self.one[pair]], self.seen(pair, pose), distance), dtype=bool)
+        found = shapely.dwithin(self.shapes[self.one[pair]], self.seen(pair, pose), distance)  # type: ignore[call-overload]
+        return np.asarray(found, dtype=np.bool_)
 
-    def overlaps(self, pair: IntArray, pose: IntArray) -> tuple[Overlap, ...]:
+    def overlaps(self, pair: IntArray, pose: IntArray) -> tuple[SharedArea, ...]:
         """The overlaps of pairs (N,) at poses (N,)."""
         if not len(pair):
             return ()
@@ -171,5 +172,5 @@ class _Pairs:
             here = np.flatnonzero(pose == number)
             most = pair[here[int(shared[here].argmax())]]
             worst = int(self.one[most]), int(self.other[most])
-            found.append(Overlap(number, float(shared[here].sum()), worst))
+            found.append(SharedArea(number, float(shared[here].sum()), worst))
         return tuple(found)

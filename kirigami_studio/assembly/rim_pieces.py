@@ -191,7 +191,7 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
 
 def _together(gaps: GeometryArray) -> BaseGeometry:
     """Gaps, of which no two overlap, as one shape."""
-    return shapely.multipolygons(shapely.get_parts(gaps))
+    return shapely.MultiPolygon(shapely.get_parts(gaps).tolist())
 
 
 def _extended(

@@ -292,7 +292,7 @@ class Shaping:
         return swept_discs(centre, drift, motion.sense[seen] * motion.opening, grown, NOTCH_TOLERANCE)
 
     def _sweeps(self, index: int) -> tuple[IntArray, GeometryArray]:
-        """Ears that may touch a panel, as flat indices of corners, and the areas (K, 3) that they sweep past it."""
+        """Ears that may touch a panel, as flat indices of corners, and their sweeps (K, 3)."""
         if index not in self._swept:
             mover, seen = self._passing_ears
             mover = mover[seen == index]

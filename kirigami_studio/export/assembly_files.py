@@ -678,7 +678,7 @@ def _area(piece: Piece) -> float:
 
 
 def parts_csv(job: AssemblyJob) -> str:
-    """The parts list as a table; words are in the user's language, numbers have points in all of them."""
+    """The parts list as a table in the user's language; numbers have points."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\r\n")
     table.writerow([tr(heading) for heading in HEADINGS.values()])

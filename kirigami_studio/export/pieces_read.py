@@ -193,7 +193,7 @@ def _holes_and_openings(
 
 
 def _finished(cuts: PieceCuts, ways: Sequence[FloatArray], kerf_mm: float) -> tuple[Polygon, float]:
-    """What the beam leaves of a piece on its ways (L, 2), mm, round it and in its openings; and how far that is off."""
+    """Finished area of a piece that is cut on ways (L, 2), mm, and how far it is off."""
     half = 0.5 * kerf_mm
     area = Polygon(ways[0]).buffer(-half, quad_segs=BEAM_CHORDS)
     burned = [Polygon(way).buffer(half, quad_segs=BEAM_CHORDS) for way in ways[1:]]

@@ -183,7 +183,7 @@ def checked_together(paths: Sequence[Path], document: Document | None = None) ->
 
 
 def _checked_beds(reports: Sequence[FileReport], document: Document) -> tuple[Checked, ...]:
-    """Compare the files of beds with the pieces of their design, and put these together where all are there."""
+    """Compare the files of beds with the pieces of their design, together where all are there."""
     from kirigami_studio.export.assembly_files import pieces_json, read_bed
     from kirigami_studio.export.pieces_read import KnownOutlines, motion_findings
 
