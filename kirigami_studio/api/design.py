@@ -435,7 +435,7 @@ class Design:
     plan_cuts.__doc__ = explicit_docstring(plan_cuts, *CUTS, over=True)
 
     def make_pieces(self, **choices: Any) -> Pieces:
-        """Make the pieces of two layers on pins, or those to be printed on theirs; takes what :meth:`plan_cuts` takes.
+        """Make the pieces of two layers on pins, or of a print; options as :meth:`plan_cuts`.
 
         Raises
         ------
@@ -812,7 +812,7 @@ class Pieces:
         return self._made.verdict
 
     def export(self, folder: str | os.PathLike[str]) -> Exported:
-        """Write cut files of both layers or plates to print, assembly sheet, parts list and motion to a folder.
+        """Write cut files or plates, assembly sheet, parts list and motion to a folder.
 
         Raises
         ------

@@ -156,7 +156,7 @@ class BackedSheet:
         return self.tile_sizes.rigid_panels(self.plan.hinges, self.plan.kerf_mm, phi, flexure_mm)
 
     def jig(self, cut: BoardCut, beds: Sequence[tuple[float, float]]) -> Jig:
-        """The widest frame, up to the usual one, that beds (width, height; mm, 0 for any) have room for."""
+        """The widest frame, up to the usual one, for beds (width, height; mm, 0 for any)."""
         size = np.ptp(self.plan.outline, axis=0) + 2.0 * max(self.tile_sizes.gap_mm, GAP_MM)
         room = [
             max(0.5 * min(across - size[0], along - size[1]) for across, along in (bed, bed[::-1]))
@@ -209,7 +209,7 @@ class BackedSheet:
 
 
 def core(tile: Polygon, width_mm: float) -> tuple[Polygon, bool]:
-    """What half a width off the edge of a tile is left of it, and whether that is all in one part, but for corners."""
+    """Rest of a tile half a width off its edge, and whether that is one part, but for corners."""
     parts = shapely.get_parts(shapely.buffer(tile, -0.5 * width_mm))
     areas = shapely.area(parts)
     if not len(parts):
@@ -218,7 +218,7 @@ def core(tile: Polygon, width_mm: float) -> tuple[Polygon, bool]:
 
 
 def without_necks(tile: Polygon, width_mm: float) -> Polygon:
-    """The largest part of a tile that is nowhere narrower than a width, mm; the tile itself where all of it is so."""
+    """The largest part of a tile that is nowhere narrower than a width, mm."""
     if width_mm <= 0.0 or tile.is_empty:
         return tile
     wide, whole = core(tile, SAFE * width_mm)

@@ -142,7 +142,7 @@ class LayerMotion:
         return np.concatenate(found)
 
     def seen_drift(self, one: IntArray, other: IntArray, moving: ComplexArray) -> ComplexArray:
-        """Drifts (K, ...) of points (K, ...), mm, of panels ``one`` in the flat sheet, seen from panels ``other``.
+        """Drifts (K, ...), mm, of points (K, ...) of panels ``one``, seen from ``other``.
 
         A point is at its place in the flat sheet plus (R(t) - 1) times its drift, in the sense of ``other``.
         """

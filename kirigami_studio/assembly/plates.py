@@ -58,7 +58,7 @@ def parts_for(assembly: Assembly, bed_mm: tuple[float, float]) -> tuple[IntArray
 
 
 def _beside(line: IntArray, parity: IntArray, count: int) -> IntArray:
-    """Numbers (P,) of the parts along one side of the sheet, by columns or rows (P,) and the sums of both (P,)."""
+    """Numbers (P,) of parts along a side, by columns or rows (P,) and the sums of both (P,)."""
     lines = int(line.max()) + 1
     found = np.zeros(len(line), dtype=np.int64)
     for number in range(1, count):

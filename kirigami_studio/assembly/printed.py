@@ -219,7 +219,7 @@ class PinJoint:
 
     @classmethod
     def usual_mm(cls, pins: PrintedPins, material_mm: float) -> float:
-        """Thickness of panels in whole layers: that of their material, and no less than the pins need."""
+        """Thickness of panels in whole layers, as of the material and enough for the pins."""
         return LAYER_MM * math.ceil(max(cls.least_mm(pins), material_mm) / LAYER_MM - ROUNDING_MM)
 
     @staticmethod

@@ -159,7 +159,7 @@ class Shaping:
         for ear in np.unique(self._straps.ear).tolist():
             own = discs(self._straps.centre[self._straps.ear == ear], self._straps.radius)
             plane = int(motion.plane[ear // 4])
-            hull: Polygon = shapely.union_all(own).convex_hull
+            hull = Polygon(shapely.get_coordinates(shapely.union_all(own).convex_hull))
             self._parts[plane] = self._parts[plane].with_more(ear // 4, _convex_parts(hull))
         for index, one in enumerate(notched):
             self._find_weak(index, self._most_pinned(index, one.shape) if one.held is None else one.held)
@@ -374,7 +374,7 @@ class Shaping:
         return whole if found is not None and isinstance(whole, Polygon) else None
 
     def add(self, index: int, shape: Polygon, added: BaseGeometry) -> None:
-        """Give a piece a larger shape; what was added is kept in mind by all that move past it later."""
+        """Give a piece a larger shape; the part ``added`` counts for all that pass it later."""
         new = shapely.get_parts(added)
         parts = [convex for part in new[shapely.area(new) > TOO_SMALL] for convex in _convex_parts(part)]
         plane = int(self.motion.plane[index])

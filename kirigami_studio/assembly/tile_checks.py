@@ -1,4 +1,4 @@
-"""Findings on tiles: whether all panels have one, how wide they are, whether their board can be cut.
+"""Findings on tiles: missing ones, their widths, and whether their board can be cut.
 
 Tiles never meet: each lies within its panel of the lattice, and panels of a feasible design pass each other.
 """
@@ -85,7 +85,7 @@ def check_tiles(
 
 
 def _width_mm(tile: Polygon, least_mm: float) -> float:
-    """Width of a tile at its narrowest place; of one that is nowhere narrower than asked for, at its widest."""
+    """Width of a tile at its narrowest place, or at its widest where that is enough."""
     if core(tile, least_mm)[1]:
         return 2.0 * float(shapely.length(shapely.maximum_inscribed_circle(tile, tolerance=0.05)))
     low, high = 0.0, least_mm

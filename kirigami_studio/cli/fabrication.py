@@ -298,7 +298,7 @@ def _work(plan: CutPlan, profile: str, output: Output) -> Work:
 
 
 def tiles_json(layers: AssemblyJob) -> dict[str, object]:
-    """What a backed design is made of."""
+    """Materials of a backed design."""
     assert layers.glued is not None  # backed designs are
     return {
         "construction": layers.construction.value,

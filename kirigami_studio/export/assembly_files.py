@@ -408,7 +408,7 @@ def _strokes_written(
     cut: tuple[Material, Machine],
     fresh: Path,
 ) -> tuple[Path, list[FileContent], list[Finding]]:
-    """Write a file, or a folder of layers, and read it twice; return where, its contents, and how they compare."""
+    """Write a file, or a folder of layers, and read it twice."""
     path, how = fresh / f"{name}{kind}", PROJECT if kind == ".lbrn2" else FORMATS[kind]
     if kind == ".lbrn2":
         write_project(strokes_lightburn(strokes, *cut, facts), strokes, path)
@@ -429,7 +429,7 @@ def _strokes_written(
 
 
 def _hinge_layer_written(job: AssemblyJob, glued: Glued, fresh: Path, home: Path, kind: str) -> Verification:
-    """Write the hinge layer with its registration holes, and judge the sheet that is found in its file."""
+    """Write the hinge layer with its registration holes, and judge its file."""
     # Projects have arcs by other curves, which their readers do not take for arcs.
     profile = replace(find_profile(PROJECT_PROFILE), flatten=True) if kind == ".lbrn2" else find_profile(job.profile)
     strokes = glued.strokes(profile)
@@ -461,7 +461,7 @@ def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
 
 
 def pieces_json(assembly: Assembly, angles: int = ANGLES, holds: Sequence[HoldPlace] = ()) -> dict[str, Any]:
-    """Pieces, hinges, motion and, where there are any, places that hold the pieces, as plain lists.
+    """Pieces, hinges, motion and places that hold the pieces, as plain lists.
 
     Outlines, holes (as rings) and hinge points are in the frame of their piece, in mm; a pose turns a piece about its
     origin, then moves it.
@@ -603,7 +603,7 @@ ITEMS = {
 
 
 def parts(job: AssemblyJob) -> tuple[PartLine, ...]:
-    """The parts list: pieces of each bed, pins or glue, parts that hold, materials, and all together."""
+    """The parts list: pieces of each bed, pins or glue, holding parts, materials, totals."""
     found = _hinge_layer_parts(job)
     for bed, work in zip(job.beds, job.works, strict=True):
         area = sum(_area(cuts.piece) for cuts in bed.pieces)

@@ -307,10 +307,10 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         draw_line(canvas, corner + scale * pin + max(0.5, 1.2 * scale) * CIRCLE, closed=True)
     for shape in drawing.shapes:
         _number(canvas, shape, scale, corner)
-    for number, rings in drawing.holds:
-        for ring in rings:
+    for number, marks in drawing.holds:
+        for ring in marks:
             _fill(canvas, [corner + scale * ring], HOLD)
-        x, y = ((corner + scale * np.concatenate(rings).max(axis=0)) * mm).tolist()
+        x, y = ((corner + scale * np.concatenate(marks).max(axis=0)) * mm).tolist()
         canvas.setFillColorRGB(*(channel / 255.0 for channel in HOLD))
         canvas.setFont("Helvetica-Bold", MOST_POINTS)
         canvas.drawString(x + 0.2 * BESIDE_POINTS, y - BESIDE_POINTS, number)

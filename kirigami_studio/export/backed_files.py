@@ -1,4 +1,4 @@
-"""Tiles and their hinge layer as files have them: strokes and record of the layer, steps, lines of the parts list.
+"""Tiles and their hinge layer in files: strokes, record, steps, lines of the parts list.
 
 The hinge layer is the cut plan with registration holes round it, which are cut first.  Its outline hangs on tabs, so
 that what is left over round it keeps the layer in register with the frame of the tiles.
@@ -58,7 +58,7 @@ class Glued:
 
     @property
     def steps(self) -> tuple[str, ...]:
-        """What to do, in order."""
+        """Steps of assembly."""
         return tuple(step.format(keep=KEEP[self.cut]) for step in STEPS)
 
     @property
@@ -88,7 +88,7 @@ class Glued:
         )
 
     def strokes(self, profile: Profile) -> tuple[Stroke, ...]:
-        """Everything that a file of this profile cuts, its smallest coordinates 0: the holes, then the sheet."""
+        """All strokes of a file of this profile from (0, 0): the holes, then the sheet."""
         holes = self.holes(profile)
         return tuple(shifted(stroke, self.shift(profile)) for stroke in (*holes, *sheet_strokes(self.plan, profile)))
 

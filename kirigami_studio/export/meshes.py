@@ -153,7 +153,7 @@ def _read_obj(content: bytes) -> Bodies:
 
 
 def threemf_bytes(plate: Plate, about: str) -> bytes:
-    """An object for each body of a plate, with the colour of its layer; several are parts of one object.
+    """An object for each body of a plate; several are parts of one object.
 
     So slicers keep them in their places.
     """

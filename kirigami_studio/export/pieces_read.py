@@ -71,7 +71,7 @@ class FoundPiece:
 
 @dataclass(frozen=True, slots=True)
 class KnownOutlines:
-    """Outlines that were found in files of one assembly: what holds of one holds of all that are the same.
+    """Outlines in files of one assembly; equal ones are looked at once.
 
     Files of several kinds mostly have the same numbers, and readers agree.  Outlines whose corners agree within
     ``SAME_MM`` are finished, compared with their pieces and moved once; holes are compared in every file.
@@ -162,11 +162,9 @@ def _matched(outlines: FloatArray, bed: CutBed) -> list[int] | None:
         np.column_stack([shapely.get_coordinates(shapely.centroid(shapes)), np.sqrt(shapely.area(shapes))])
         for shapes in (outlines, meant)
     ]
-    away, number = cKDTree(places[0]).query(places[1])
-    if len(set(number.tolist())) != len(meant) or float(away.max()) > SAME_PLACE_MM:
-        return None
+    away, number = (np.asarray(values) for values in cKDTree(places[0]).query(places[1]))
     found: list[int] = number.tolist()
-    return found
+    return found if len(set(found)) == len(meant) and float(away.max()) <= SAME_PLACE_MM else None
 
 
 def _holes_and_openings(

@@ -271,14 +271,16 @@ def write_print(
         joining = JOINING if job.seams else ()
         steps = tuple(tr(step, layer_mm=LAYER_MM) for step in (*STEPS[:-1], *joining, STEPS[-1]))
         about = {"title": job.name or tr("Printed kirigami"), "subject": job.about}
-        sheet = AssemblySheet(job.assembly, (), about, job.lines, job.target, steps, LEGEND, pins_are_put_in=False)
+        sheet = AssemblySheet(
+            job.assembly, (), about, job.lines, job.target, steps=steps, legend=LEGEND, pins_are_put_in=False
+        )
         write_assembly_pdf(sheet, fresh / SHEET, job.paper)
         names = sorted(entry.name for entry in fresh.iterdir())
     return AssemblyFiles(tuple(home / name for name in names), tuple(verified))
 
 
 def _verification(plate: PrintedPlate, bodies: Plate, home: Path, kind: str) -> Verification:
-    """What reading back has shown of a plate's file, which is there only where it holds."""
+    """Findings of reading back a plate's file, which is there only where it holds."""
     width, depth, height = np.max([solid.high for solid in bodies], axis=0).tolist()
     volume = sum(solid.volume_mm3 for solid in bodies) / 1000.0
     found = Finding.judged(True, "mesh.as_planned", bodies=len(bodies), volume_cm3=volume, height_mm=height)

@@ -457,7 +457,7 @@ def file_voids(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> Fo
 
 
 def sheet_findings(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> list[Finding]:
-    """What the strokes of one sheet, as read, leave of it: pieces, widths, voids; see :func:`file_physics`."""
+    """Pieces, widths and voids that the strokes of one sheet, as read, leave."""
     physics, voids = file_physics(strokes, plan, profile), file_voids(strokes, plan, profile)
     return [*_physics_findings(physics, plan), *void_findings(voids, plan)]
 

@@ -281,7 +281,7 @@ def bed_problems(plan: CutPlan) -> list[Problem]:
 
 
 def fits_on(bed: tuple[float, float], size: tuple[float, float]) -> bool:
-    """Whether something of a size (width, height; mm) fits on a bed, 0 for any, whichever way round it lies."""
+    """Whether a size (width, height; mm) fits on a bed, 0 for any, either way round."""
     return min(bed) == 0.0 or any(size[0] <= across and size[1] <= along for across, along in (bed, bed[::-1]))
 
 

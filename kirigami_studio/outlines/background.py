@@ -1,4 +1,4 @@
-"""A picture -> how far each pixel is from its background: the colour of the border, its light evened out.
+"""A picture -> distance of each pixel from the colour of the border, light evened out.
 
 The *ground* is the colour that most of the border has, or that of the corners where a shape reaches the border; it may
 change slowly over the picture, as light does.  *Distance* is that of colours in CIELAB, of pictures in grey that of
@@ -174,7 +174,7 @@ def level_of(distance: FloatArray, least: float) -> tuple[float, bool]:
 
 
 def _midway(smooth: FloatArray, level: float, highest: FloatArray) -> float:
-    """The middle of the edges of a silhouette, at its level or above, as far as it hardly shrinks."""
+    """Middle level of the edges of a silhouette, as far as it hardly shrinks."""
     whole = silhouette(smooth, level)
     edge = whole & ~ndimage.binary_erosion(whole, border_value=1)
     wide = ndimage.maximum_filter(smooth, 13)[edge]
@@ -203,7 +203,7 @@ def _touching(whole: BoolArray) -> float:
 def _separated(
     colours: FloatArray, small: FloatArray, border: BoolArray, within: BoolArray
 ) -> tuple[Separated, FloatArray] | None:
-    """Divide the part of a picture that is ``within`` by the colour of its ``border``; the reduced distance, too."""
+    """Divide the part ``within`` of a picture by the colour of its ``border``."""
     if (ground_found := _ground(small, border)) is None:
         return None
     model, known = ground_found
@@ -230,7 +230,7 @@ def _separated(
 
 
 def _ground(small: FloatArray, border: BoolArray) -> tuple[FloatArray, BoolArray] | None:
-    """Model (6, C) of the ground, quadratic in the place, and which pixels of the border have its colour.
+    """Quadratic model (6, C) of the ground, and the pixels of the border that have its colour.
 
     None where the border has no colour of its own.
     """
@@ -277,14 +277,14 @@ def _fitted(terms: FloatArray, seen: FloatArray) -> tuple[FloatArray, BoolArray]
 
 
 def _leaves(model: FloatArray, seen: FloatArray) -> bool:
-    """Whether a model changes far more over the picture than the colours (N, C) it was made of: it is no light."""
+    """Whether a model changes far more than the colours (N, C) it was made of."""
     low, high = np.quantile(seen, (0.1, 0.9), axis=0)
     change = np.ptp(_evaluated(model, (9, 9)), axis=(0, 1))
     return bool(np.any(change > EXTRAPOLATED * (high - low) + 0.01 * SAME_GROUND))
 
 
 def _evened(small: FloatArray, judged: FloatArray, within: BoolArray) -> FloatArray | None:
-    """Model (15, C) of the fourth order of all that is not the silhouette, for light that the border shows roughly."""
+    """Model (15, C) of the fourth order of all beside the silhouette."""
     shape = ndimage.binary_dilation(silhouette(judged, middle_of(judged)), iterations=4)
     rows, columns = np.nonzero(within & ~shape)
     if len(rows) < LEAST_SEEN:
@@ -348,7 +348,7 @@ def colours_in_lab(colours: FloatArray) -> FloatArray:
 
 
 def _reduced(colours: FloatArray) -> FloatArray:
-    """Means over squares of pixels, ``JUDGED_SIDE`` along the longer side; the rest at the edges is left out."""
+    """Means over squares of pixels, ``JUDGED_SIDE`` along the longer side."""
     step = -(-max(colours.shape[:2]) // JUDGED_SIDE)
     if step == 1:
         return colours
@@ -360,7 +360,7 @@ def _reduced(colours: FloatArray) -> FloatArray:
 
 
 def _page(distance: FloatArray, level: float, small: FloatArray) -> BoolArray | None:
-    """The page that lies in a picture: light, colourless, with four corners, and lighter than what is around it."""
+    """The page in a picture: light, colourless, with four corners, on darker ground."""
     whole = silhouette(distance, level)
     if np.mean(whole) < PAGE_SHARE or _touching(whole) > 0.5:
         return None

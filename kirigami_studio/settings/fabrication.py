@@ -598,7 +598,7 @@ def is_pinned(settings: FabricationSettings) -> bool:
 
 
 def is_printed(settings: FabricationSettings) -> bool:
-    """Whether a printer makes pieces and pins at once; an unknown material is not, unless asked for."""
+    """Whether a printer makes pieces and pins at once."""
     return _is_made(settings, Construction.PRINTED)
 
 

@@ -1,4 +1,4 @@
-"""Both layers of a backed sheet: which material is the board, and how each is cut; a word on it before a run."""
+"""Both layers of a backed sheet: which material is the board, and how each is cut."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TABS = 4
 
 
 def is_backed(settings: FabricationSettings) -> bool:
-    """Whether the sheet is made of tiles on a hinge layer; an unknown material is not, unless asked for."""
+    """Whether the sheet is made of tiles on a hinge layer."""
     try:
         return construction_for(settings) is Construction.BACKED
     except FabricationError:
@@ -32,7 +32,7 @@ def is_backed(settings: FabricationSettings) -> bool:
 
 
 def stiffness(material: Material) -> float:
-    """Geometric mean of the stiffness of a sheet in tension, E h, and in bending, E h^3: GPa mm^2."""
+    """Geometric mean of stiffness in tension, E h, and in bending, E h^3: GPa mm^2."""
     return material.young_gpa * material.thickness_mm**2
 
 
@@ -71,7 +71,7 @@ def _first_that_is_cut(settings: FabricationSettings, keys: Sequence[str]) -> Ma
 
 
 def hinge_layer(settings: FabricationSettings) -> FabricationSettings:
-    """How the sheet with the connectors is cut: the hinge layer of a backed sheet; the settings themselves for others.
+    """Settings of the sheet with connectors: of a backed sheet, its hinge layer.
 
     It is one sheet, and hangs on tabs in what is left over round it.
 
@@ -99,7 +99,7 @@ def board_layer(settings: FabricationSettings) -> FabricationSettings:
 
 
 def _of_layer(settings: FabricationSettings, material: Material, other: Material) -> FabricationSettings:
-    """Settings of one layer: kerf and machine that were chosen hold for the material that was chosen with them."""
+    """Settings of one layer; chosen kerf and machine hold for their own material."""
     found = replace(
         settings, construction=Construction.BACKED, material=material.key, second_material=other.key, opened_mm=None
     )

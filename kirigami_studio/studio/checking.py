@@ -233,8 +233,8 @@ def _bed_name(record: PieceRecord) -> str:
 
 def _made_otherwise(one: PieceRecord, other: PieceRecord) -> bool:
     """Whether two beds cannot belong to one export."""
-    same = {"layer": other.layer, "bed": other.bed, "pieces": other.pieces, "lines": other.lines}
-    return replace(one, **same, profile=other.profile) != other
+    of_bed = replace(one, layer=other.layer, bed=other.bed, pieces=other.pieces, lines=other.lines)
+    return replace(of_bed, profile=other.profile) != other
 
 
 def _request_of_pieces(record: PieceRecord, document: Document) -> tuple[CutRequest, tuple[Problem, ...]]:

@@ -16,7 +16,7 @@ PROJECT_FILTER = mark("Kirigami Studio projects (*.kiri)")
 
 
 class FileToOpen(Enum):
-    """A file to open: the title of its dialog, and the name and extensions of the files that it lists."""
+    """A file to open: title of its dialog, name and extensions of the files listed."""
 
     TARGET = mark("Open target"), mark("Targets"), tuple(READERS)
     START = mark("Open start outline"), mark("Shapes"), tuple(READERS)

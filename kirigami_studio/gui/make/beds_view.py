@@ -39,7 +39,7 @@ class BedsView(Canvas):
         self._places: list[FloatArray] = []
 
     def show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float], look: PieceLook) -> None:
-        """Show other beds, or none, of a machine that reaches so far (width, height; mm), as pieces look."""
+        """Show other beds, or none, of a machine's reach (width, height; mm)."""
         self._beds = beds
         if beds:
             self._look = look

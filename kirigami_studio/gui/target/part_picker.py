@@ -187,7 +187,7 @@ class PartPicker(QDialog):
         self.finished.connect(lambda _: self._stop())
 
     def begin(self, read: PartsRead, purpose: Purpose = Purpose.TARGET) -> None:
-        """Show a drawing with what would be taken by itself, all lines as painted where nothing is closed."""
+        """Show a drawing and its usual silhouette, lines as painted where nothing is closed."""
         self._stop()
         self._read, self._purpose, source = read, purpose, read.source
         closed = any(part.is_closed for part in source.parts)
@@ -319,7 +319,7 @@ class PartPicker(QDialog):
         self._pick.start(tr("taking the object"), partial(picking_object, self._read, strokes), callbacks)
 
     def _on_object(self, found: PartsRead) -> None:
-        """Show the object as a part and choose it alone, or what is taken by itself where it was forgotten."""
+        """Show the object as a part and choose it alone, or the usual one without it."""
         self._read = found
         is_there = found.photo is not None and bool(found.photo.strokes.taken)
         self.restart.setVisible(is_there)

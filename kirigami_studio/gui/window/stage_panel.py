@@ -395,7 +395,7 @@ class StagePanel(Card):
         self._tell_as_cut()
 
     def show_made(self, made: Planned | MadePieces | None) -> None:
-        """The cuts or the pieces of the design are planned: draw pieces and tiles, and say so in the header."""
+        """Draw pieces and tiles of a design whose cuts are planned, and name them in the header."""
         self.view.show_pieces(made.posed if isinstance(made, MadePieces) else None)
         self.view.show_tiles(made.layers if isinstance(made, Planned) else None)
         self.show_title()
