@@ -137,6 +137,7 @@ def model_folder() -> Path:
 def weights(path: Path) -> None:
     """A file of weights that its manifest knows."""
     from kirigami_studio.generator import weights as models
+    from kirigami_studio.lab.trained_weights import variants_about
 
     folder = model_folder()
     entries = json.loads((folder / models.MANIFEST).read_bytes())
@@ -153,11 +154,12 @@ def weights(path: Path) -> None:
 def manifest(path: Path) -> None:
     """The list of the weights in a folder."""
     from kirigami_studio.generator import weights as models
+    from kirigami_studio.lab.trained_weights import variants_about
 
     folder = model_folder()
     shutil.copy(path, folder / models.MANIFEST)
     models.load_model.cache_clear()
-    attempted(folder, models.variants, models.variants_about, lambda place: models.digest_of("a", place))
+    attempted(folder, models.variants, variants_about, lambda place: models.digest_of("a", place))
     for variant in models.variants(folder)[:3]:
         attempted(folder, partial(models.load_model, variant))
 
