@@ -137,7 +137,6 @@ def model_folder() -> Path:
 def weights(path: Path) -> None:
     """A file of weights that its manifest knows."""
     from kirigami_studio.generator import weights as models
-    from kirigami_studio.lab.trained_weights import variants_about
 
     folder = model_folder()
     entries = json.loads((folder / models.MANIFEST).read_bytes())
