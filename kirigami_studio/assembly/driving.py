@@ -1,4 +1,6 @@
-"""A board behind a pinned sheet, with arms that turn it: one piece of layer 2 is fixed, another one is led on a circle.
+"""A board behind a pinned sheet, with arms that turn it.
+
+One piece of layer 2 is fixed to the board, another one is led on a circle.
 
 In the frame of a piece of layer 2, a corner of another is at P + R(phi - pi) B: an arm of length |B| that turns about P
 by the whole angle of the motion carries it exactly, and never stops at a dead point.  Screws at two pins of the fixed
@@ -14,6 +16,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import shapely
@@ -132,7 +135,7 @@ def driven(plan: PinnedPlan, kind: DriveKind) -> tuple[DriveParts | None, tuple[
 
 
 def _fixed_pieces(assembly: Assembly) -> Iterator[tuple[Piece, tuple[Hinge, Hinge]]]:
-    """Pieces of layer 2 with the two of their pins that are farthest apart, from the middle of the flat sheet."""
+    """Pieces of layer 2 from the middle on, with the two of their pins farthest apart."""
     origins = dict(zip(assembly.by_id, assembly.poses(math.pi)[:, :2], strict=True))
     middle = np.mean(list(origins.values()), axis=0)
     pins = _pins(assembly)
@@ -150,7 +153,10 @@ def _pins(assembly: Assembly) -> dict[str, list[Hinge]]:
 
 
 def _parts_of(assembly: Assembly, piece: Piece) -> tuple[complex, complex]:
-    """Means over a panel's corners of both parts of the motion, mm: R(-a) even + R(a) odd with 2a = pi - phi."""
+    """Means over a panel's corners of both parts of the motion, mm.
+
+    A node is at R(-a) even + R(a) odd with 2a = pi - phi.
+    """
     nodes = assembly.deployment.topology.panel_nodes[piece.panel]
     even, odd = as_plane(assembly.deployment.even_part), as_plane(assembly.deployment.odd_part)
     return complex(even[nodes].mean()) * assembly.cell_mm, complex(odd[nodes].mean()) * assembly.cell_mm
@@ -189,7 +195,7 @@ def _arms(plan: PinnedPlan, fixed: Piece, columns: Sequence[Hinge], kind: DriveK
 
 
 def _distance_to_swept(point: complex, pivot: complex, reach: complex, opening: float) -> float:
-    """Distance of a point from all that a line from a pivot sweeps as it turns clockwise by an angle."""
+    """Distance of a point from all that a line sweeps, turning clockwise about a pivot."""
     seen = (point - pivot) / reach
     behind = np.mod(-np.angle(seen), 2.0 * math.pi)
     if behind <= opening:
@@ -201,7 +207,7 @@ def _distance_to_swept(point: complex, pivot: complex, reach: complex, opening: 
 def _least_distance(one: Arm, other: Arm, opening: float) -> float:
     """Least distance of the middle lines of two arms over the motion, mm."""
     turn = np.exp(-1j * np.linspace(0.0, opening, ANGLES))
-    lines = []
+    lines: list[Any] = []
     for arm in (one, other):
         pivot, reach = as_plane(np.array([arm.pivot, arm.reach]))
         lines.append(shapely.linestrings(as_points(np.stack([np.full(ANGLES, pivot), pivot + reach * turn], axis=1))))
@@ -251,7 +257,7 @@ def _arm_piece(
     name: str, layer: int, fixed: Piece, pivot: FloatArray, reach: FloatArray, turned: DriveKind, pin_mm: float
 ) -> Piece:
     """An arm in a frame with its pivot at the origin, as it lies in the flat sheet."""
-    body = LineString([(0.0, 0.0), reach]).buffer(0.5 * ARM_MM, quad_segs=CHORDS)
+    body = LineString(np.array([np.zeros(2), reach])).buffer(0.5 * ARM_MM, quad_segs=CHORDS)
     way = float(np.degrees(np.arctan2(reach[1], reach[0])))
     holes, openings = [RoundHole(np.array(reach), pin_mm)], []
     if turned is DriveKind.CRANK:
@@ -284,6 +290,7 @@ def _board_cuts(
     plain = [RoundHole(np.asarray(hinge.at[1]), pin_mm) for hinge in columns]
     plain += [RoundHole(arm.pivot, pin_mm) for arm in arms[1:]]
     pivot = arms[0].pivot
+    choices: list[tuple[list[RoundHole], list[FloatArray]]]
     if kind is DriveKind.CRANK:
         choices = [([RoundHole(pivot, BAR_HOLE_MM)], [])]
     else:
@@ -311,7 +318,7 @@ def _servo_cuts(shaft: FloatArray, degrees: float) -> tuple[list[RoundHole], lis
 def _board_outline(
     plan: PinnedPlan, columns: Sequence[Hinge], arms: Sequence[Arm], openings: Sequence[FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
-    """A rectangle (4, 2) under all that moves and is fixed over it, and places (4, 2) of the screws to the wall."""
+    """A rectangle (4, 2) under all that moves, and places (4, 2) of the screws to the wall."""
     turn = np.exp(-1j * np.linspace(0.0, math.pi - plan.assembly.phi_target, ANGLES))
     swept = [as_plane(arm.pivot[np.newaxis])[0] + as_plane(arm.reach[np.newaxis])[0] * turn for arm in arms]
     points = np.concatenate(

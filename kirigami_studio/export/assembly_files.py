@@ -253,7 +253,9 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
     write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
     verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
-    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
+    sheet = AssemblySheet(
+        job.assembly, job.beds, _about(job), _part_lines(job), job.target, holds=job.holds, drive=job.drive
+    )
     write_assembly_pdf(sheet, fresh / SHEET, job.paper)
     for one in verified:
         for finding in one.findings:

@@ -111,11 +111,11 @@ class AssemblySheet:
     about: Mapping[str, str]
     lines: Sequence[str]
     target: FloatArray | None = None
-    holds: Sequence[HoldPlace] = ()
-    drive: DriveParts | None = None
     steps: Sequence[str] = STEPS
     legend: Mapping[int, str] = field(default_factory=lambda: LEGEND)
     pins_are_put_in: bool = True
+    holds: Sequence[HoldPlace] = ()
+    drive: DriveParts | None = None
 
 
 def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE) -> None:
@@ -287,10 +287,10 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         draw_line(canvas, corner + scale * pin + max(0.5, 1.2 * scale) * CIRCLE, closed=True)
     for shape in drawing.shapes:
         _number(canvas, shape, scale, corner)
-    for number, rings in drawing.holds:
-        for ring in rings:
-            _fill(canvas, [corner + scale * ring], HOLD)
-        x, y = ((corner + scale * np.concatenate(rings).max(axis=0)) * mm).tolist()
+    for number, signs in drawing.holds:
+        for sign in signs:
+            _fill(canvas, [corner + scale * sign], HOLD)
+        x, y = ((corner + scale * np.concatenate(signs).max(axis=0)) * mm).tolist()
         canvas.setFillColorRGB(*(channel / 255.0 for channel in HOLD))
         canvas.setFont("Helvetica-Bold", MOST_POINTS)
         canvas.drawString(x + 0.2 * BESIDE_POINTS, y - BESIDE_POINTS, number)

@@ -90,7 +90,8 @@ class PieceCuts:
         openings = (*inner, *pockets)
         holes = tuple(RoundHole(hole.centre, hole.diameter_mm - kerf_mm) for hole in piece.holes)
         rounds = [shapely.Point(hole.centre).buffer(0.5 * hole.diameter_mm, quad_segs=ROUND) for hole in holes]
-        area = shapely.difference(Polygon(outline, openings), shapely.union_all(rounds)).buffer(-clearance_mm(kerf_mm))
+        area: BaseGeometry = Polygon(outline, openings).difference(shapely.union_all(rounds))
+        area = area.buffer(-clearance_mm(kerf_mm))
         marks = [line for mark in piece.marks for line in shapely.get_parts(area.intersection(LineString(mark)))]
         lines = tuple(shapely.get_coordinates(line) for line in marks if isinstance(line, LineString) and line.length)
         if piece.marks:  # the number keeps out of them

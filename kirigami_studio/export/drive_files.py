@@ -1,4 +1,4 @@
-"""Board and arms of a pinned sheet in its parts list and on its assembly sheet: spacers, screws, steps."""
+"""Board and arms of a pinned sheet in its lists: spacers, screws, steps."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def drive_steps(drive: DriveParts) -> tuple[str, ...]:
 
 
 def gap_mm(kind: DriveKind, thickness_mm: float, beyond_mm: float) -> float:
-    """Room between arms and board: for nuts, or for the horn of a servo on its flange behind the board."""
+    """Room between arms and board, mm: for nuts, or for the horn of a servo."""
     return beyond_mm if kind is DriveKind.CRANK else max(beyond_mm, HORN_MM - thickness_mm)
 
 

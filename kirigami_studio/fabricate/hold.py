@@ -1,4 +1,4 @@
-"""Ways to keep a sheet open, or flat: magnets, eyelets, stitches, tabs, and the room that each of them needs."""
+"""Ways to keep a sheet open, or flat, and the room that each of them needs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REMANENCE_T = 1.17
 
 
 class HoldKind(StrEnum):
-    """Parts that hold a sheet in an end state; the values stand on the command line and in files."""
+    """Parts that hold a sheet; the values stand on the command line and in files."""
 
     NONE = "none"
     MAGNETS = "magnets"
@@ -87,7 +87,7 @@ class HoldOptions:
         return SIZES[Fastener.EYELET].head_mm if self.kind is HoldKind.EYELETS else self.hole_mm
 
     def pull_n(self, apart_mm: float) -> float:
-        """Estimate the pull of two magnets side by side, N, as that of two dipoles with opposite poles up.
+        """Estimate the pull of two magnets side by side, N, as that of two dipoles.
 
         F = 3 mu0 m^2 / (4 pi r^4) with m = B V / mu0; where magnets nearly touch, they pull more.
         """
