@@ -133,16 +133,16 @@ class PosedPieces:
 
     @cached_property
     def layers(self) -> tuple[tuple[int, ...], ...]:
-        """Places of the pieces in the assembly, layer by layer, the lowest first."""
+        """Places of the pieces in the assembly, layer by layer, the lowest first: layer 1 lies in front."""
         numbers = np.array([piece.layer for piece in self.assembly.pieces])
-        return tuple(tuple(np.flatnonzero(numbers == layer).tolist()) for layer in np.unique(numbers))
+        return tuple(tuple(np.flatnonzero(numbers == layer).tolist()) for layer in np.unique(numbers)[::-1])
 
     @cached_property
     def _pins(self) -> tuple[list[int], ComplexArray]:
         """The upper piece of each pin, and where it is in that piece's frame (mm)."""
         place = {piece.id: number for number, piece in enumerate(self.assembly.pieces)}
-        uppermost = [place[hinge.pieces[1]] for hinge in self.assembly.hinges]
-        at = np.array([hinge.at[1] for hinge in self.assembly.hinges]).reshape(-1, 2)
+        uppermost = [place[hinge.pieces[0]] for hinge in self.assembly.hinges]
+        at = np.array([hinge.at[0] for hinge in self.assembly.hinges]).reshape(-1, 2)
         return uppermost, as_plane(at)
 
     def places(self, phi: float) -> tuple[ComplexArray, ComplexArray]:

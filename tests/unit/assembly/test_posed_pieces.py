@@ -48,7 +48,7 @@ def test_that_heads_lie_over_the_holes_of_both_layers(posed: PosedPieces, phi: f
 
 def test_that_layers_come_from_the_lowest_and_hold_every_piece_once(posed: PosedPieces) -> None:
     numbers = [posed.assembly.pieces[place].layer for layer in posed.layers for place in layer]
-    assert numbers == sorted(numbers) and len(posed.layers) == 2
+    assert numbers == sorted(numbers, reverse=True) and len(posed.layers) == 2
     assert sorted(place for layer in posed.layers for place in layer) == list(range(len(posed.assembly.pieces)))
 
 
