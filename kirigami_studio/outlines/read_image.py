@@ -214,10 +214,7 @@ def picture_size(path: str | Path) -> tuple[int, int]:
     TargetError
         Not a picture, or blank.
     """
-    path = Path(path)
-    content = read_bytes(path, MOST_MEGABYTES)
-    with decoding(path, "source.image_damaged"):
-        return _levels(content).size
+    return _levels_of(path).size
 
 
 def is_plain_picture(path: str | Path) -> bool:
@@ -228,10 +225,7 @@ def is_plain_picture(path: str | Path) -> bool:
     TargetError
         Not a picture, or blank.
     """
-    path = Path(path)
-    content = read_bytes(path, MOST_MEGABYTES)
-    with decoding(path, "source.image_damaged"):
-        return _levels(content).is_plain
+    return _levels_of(path).is_plain
 
 
 def automatic_threshold(path: str | Path) -> float:
@@ -242,10 +236,14 @@ def automatic_threshold(path: str | Path) -> float:
     TargetError
         Not a picture, or blank.
     """
+    return _levels_of(path).automatic
+
+
+def _levels_of(path: str | Path) -> Levels:
     path = Path(path)
     content = read_bytes(path, MOST_MEGABYTES)
     with decoding(path, "source.image_damaged"):
-        return _levels(content).automatic
+        return _levels(content)
 
 
 def outline_of_mask(mask: BoolArray, name: str) -> Outline:

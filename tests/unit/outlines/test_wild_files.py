@@ -1,4 +1,4 @@
-"""DXF and pictures as people have them: inputs that failed once, and those that must stay right."""
+"""Files as people have them: inputs that failed once, and those that must stay right."""
 
 from __future__ import annotations
 
@@ -11,8 +11,12 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read import read_target
 
-WILD = Path(__file__).resolve().parents[2] / "data" / "wild" / "other"
-EXPECTED = json.loads((WILD / "expected.json").read_text(encoding="utf-8"))
+WILD = Path(__file__).resolve().parents[2] / "data" / "wild"
+EXPECTED = {
+    f"{folder}/{name}": expected
+    for folder in ("svg", "other")
+    for name, expected in json.loads((WILD / folder / "expected.json").read_text(encoding="utf-8")).items()
+}
 
 
 @pytest.mark.parametrize("name", EXPECTED)
