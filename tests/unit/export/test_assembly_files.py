@@ -426,7 +426,10 @@ def test_that_files_of_three_kinds_are_written_once_and_their_outlines_worked_ou
     assert work["_pin_finding"] == len(KINDS), "holes are compared in files of every kind"
 
 
-def test_that_sheet_and_parts_list_are_german_in_german(job: AssemblyJob, tmp_path: Path) -> None:
+def test_that_sheet_and_parts_list_are_german_in_german(
+    job: AssemblyJob, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    request.addfinalizer(lambda: words.choose("en"))
     words.choose("de")
     write_assembly(replace(job), tmp_path / "out", kinds=())
     rows = list(csv.DictReader((tmp_path / "out" / "parts.csv").read_text(encoding="utf-8").splitlines()))
