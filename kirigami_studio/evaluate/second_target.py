@@ -26,6 +26,14 @@ USUAL_PHI, USUAL_WEIGHT = math.radians(45.0), 0.3
 class SecondTarget:
     """Another target of a sheet on its way.
 
+    Attributes
+    ----------
+    outline : Outline
+    phi : float, radians, above 0 and below pi
+        Angle at which the sheet should show it.
+    weight : float, above 0, up to 4
+        Weight of its match, where that of the first target has 1: it may count four times as much.
+
     Raises
     ------
     AngleError, UsageError
@@ -33,7 +41,6 @@ class SecondTarget:
     """
 
     outline: Outline
-    #: radians, above 0 and below pi; angle at which the sheet should show it
     phi: float = field(
         default=USUAL_PHI,
         metadata=Setting(
@@ -57,7 +64,6 @@ class SecondTarget:
             open_unless_given=True,
         ).metadata,
     )
-    #: above 0, up to 4; weight of its match, where that of the first target has 1: it may count four times as much
     weight: float = field(
         default=USUAL_WEIGHT,
         metadata=Setting(

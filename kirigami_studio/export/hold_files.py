@@ -125,10 +125,12 @@ def hold_lines(places: Sequence[HoldPlace], options: HoldOptions) -> list[PartsE
             note = f"{kept}: {'; '.join((*notes, where))}"
             found.append(PartsEntry("magnets", count, options.magnet_mm, options.magnet_height_mm, note))
         elif options.kind is HoldKind.TABS:
-            found.append(PartsEntry("tabs", count, None, None, f"{kept}: {tr('adhesive tape')}; {where}"))
+            tape = tr("adhesive tape")
+            found.append(PartsEntry("tabs", count, None, None, f"{kept}: {tape}; {where}"))
         else:
             sewn = options.kind is HoldKind.STITCHES
-            note = f"{kept}: {tr('thread') if sewn else tr('with a spare pin, a ring or a cord')}; {where}"
+            means = tr("thread") if sewn else tr("with a spare pin, a ring or a cord")
+            note = f"{kept}: {means}; {where}"
             found.append(PartsEntry(options.kind.value, count, options.hole_mm, None, note))
     return found
 

@@ -48,19 +48,27 @@ KINDS = ("rectangle", "square", "circle", "ellipse", "triangle", "hexagon")
 class StartShape:
     """What flat sheets look like, whatever their grid.
 
+    Attributes
+    ----------
+    name : str
+        As the command line takes it, e.g. "ellipse:3:2", or the name of a file or of a library silhouette.
+    outline : Outline or None
+        Its mirror axis is upright if it has one; None for a rectangle.
+    aspect : float or None
+        Width over height of a rectangle; None for square cells, whatever the grid.
+    weight : float, above 0, up to 10
+        How firmly fits hold round parts and hollows of the outline, see ``polish.chords``: below 1 the flat sheet may
+        be a little off its start for a better match.  Straight sides between sharp corners are met at any weight.
+
     Raises
     ------
     UsageError
         A weight out of range.
     """
 
-    #: As the command line takes it, e.g. "ellipse:3:2", or the name of a file or of a library silhouette.
     name: str = "rectangle"
-    outline: Outline | None = None  #: Its mirror axis is upright if it has one; None for a rectangle
-    aspect: float | None = None  #: Width over height of a rectangle; None for square cells, whatever the grid
-    #: above 0, up to 10; how firmly fits hold round parts and hollows of the outline, see ``polish.chords``: below 1
-    #: the flat sheet may be a little off its start for a better match.  Straight sides between sharp corners are met at
-    #: any weight.
+    outline: Outline | None = None
+    aspect: float | None = None
     weight: float = field(
         default=USUAL_WEIGHT,
         metadata=Setting(

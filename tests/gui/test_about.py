@@ -37,7 +37,7 @@ def test_that_words_are_looked_for_in_names_and_in_texts(about: AboutWindow, qtb
     assert about.showing()[0] in about.shown.text()  # no text of a part that is hidden
     about.search.setText("lesser general public")
     assert {"PySide6_Essentials", "shapely"} <= set(about.showing())  # GEOS is inside shapely
-    about.search.setText("no such words")
+    about.search.setText("qwertz wurzelbrumpft")
     assert about.showing() == []
     qtbot.keyClick(about, Qt.Key.Key_Escape)
     assert about.isVisible() and len(about.showing()) == len(components())

@@ -238,4 +238,4 @@ def test_that_equal_projects_give_equal_bytes_with_their_photo(traced_project: P
     assert opened.picture is not None
     assert store.pack(opened.document, opened.picture) == traced_project.read_bytes()
     with pytest.raises(store.ProjectError):
-        replace(opened.picture, name="page.tiff")
+        replace(opened.picture, name="page.txt")

@@ -202,7 +202,7 @@ def commands(
         sheet("export_artwork", tr("Export art&work …"), artwork, export_artwork),
         command(
             "share",
-            tr("S&hare as a page …"),
+            tr("Share as a pa&ge …"),
             tr("One file that moves in every browser, with the project inside"),
             partial(files.export, ".html"),
         ),
