@@ -133,7 +133,7 @@ class PosedPieces:
 
     @cached_property
     def layers(self) -> tuple[tuple[int, ...], ...]:
-        """Places of the pieces in the assembly, layer by layer, the lowest first: layer 1 lies in front."""
+        """Places of the pieces in the assembly by layers, the lowest first and layer 1 in front."""
         numbers = np.array([piece.layer for piece in self.assembly.pieces])
         return tuple(tuple(np.flatnonzero(numbers == layer).tolist()) for layer in np.unique(numbers)[::-1])
 
