@@ -216,9 +216,7 @@ def test_that_each_problem_is_followed_by_the_fix_that_was_tried(jamming: MainWi
     assert all(lines.count(fix.line) == 1 for fix in state.advice.fixes)
 
 
-def test_that_pieces_on_pins_are_judged_and_pins_without_room_refused(
-    ready: MainWindow, until: Until
-) -> None:
+def test_that_pieces_on_pins_are_judged_and_pins_without_room_refused(ready: MainWindow, until: Until) -> None:
     keeper, fabrication = ready.services.verdict, ready.services.fabrication
     fabrication.change(construction=Construction.PINNED, width_mm=200.0)
     until(lambda: judged(ready) and ready.fabrication.numbers["pieces"].text().endswith("pins"))
