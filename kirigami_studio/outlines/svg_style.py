@@ -24,6 +24,9 @@ color4: Any = untyped_color4
 
 #: Letters of all style sheets together without embedded files; rules; tests of selectors that look at many elements.
 MOST_STYLE, MOST_RULES, MOST_TESTS = 300_000, 5_000, 3_000_000
+#: Spaces of CSS Color 4 that are measured as light, and those of hues; the others have red, green and blue.
+OF_LIGHT = frozenset({"lab", "lch", "oklab", "oklch", "xyz", "xyz-d50", "xyz-d65"})
+OF_HUE = frozenset({"hsl", "hwb"})
 #: How deep variables lead to each other, and how long one value may become.
 DEEPEST_VARIABLE, LONGEST_VALUE = 16, 4_000
 EMBEDDED = re.compile(r"url\(\s*[\"']?data:[^)]*\)", re.IGNORECASE)
@@ -227,12 +230,25 @@ def colour_of(text: str, current: str = "black") -> tuple[float, float, float, f
         colour = color4.parse_color(current)
     if colour is None or isinstance(colour, str):
         return None
-    try:
-        red, green, blue, opacity = (float(value or 0.0) for value in colour.to("srgb"))
-    except NotImplementedError:  # a colour space that only screens know: whether it is seen is what counts
-        red, green, blue, opacity = 0.5, 0.5, 0.5, float(colour.alpha)
-    values = [min(max(value, 0.0), 1.0) if math.isfinite(value) else 0.0 for value in (red, green, blue, opacity)]
-    return values[0], values[1], values[2], values[3]
+    channels = (*_srgb(colour), float(colour.alpha))
+    red, green, blue, opacity = (min(max(value, 0.0), 1.0) if math.isfinite(value) else 0.0 for value in channels)
+    return red, green, blue, opacity
+
+
+def _srgb(colour: color4.Color) -> list[float]:
+    """Red, green and blue of a colour in any space of CSS Color 4; white is white in each.
+
+    Channels of other screens' primaries count as those of sRGB: only hues of saturated colours differ.
+    """
+    if colour.space in OF_LIGHT:
+        from skimage.color import lab2rgb  # few drawings need it
+
+        lightness, a, b, _ = colour.to("lab")
+        return [float(value) for value in lab2rgb([lightness, a, b])]
+    values = [float(value or 0.0) for value in (colour.to("srgb") if colour.space in OF_HUE else colour)][:3]
+    if colour.space == "srgb-linear":  # the transfer function of IEC 61966-2-1
+        return [12.92 * value if value <= 0.0031308 else 1.055 * value ** (1.0 / 2.4) - 0.055 for value in values]
+    return values
 
 
 def share_of(stated: str | None, otherwise: float = 1.0) -> float:

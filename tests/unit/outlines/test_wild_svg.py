@@ -9,6 +9,7 @@ import pytest
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines.merging import usual_outline
 from kirigami_studio.outlines.read import read_parts, read_target
+from kirigami_studio.outlines.svg_style import colour_of
 
 WILD = Path(__file__).resolve().parents[2] / "data" / "wild" / "svg"
 
@@ -198,3 +199,25 @@ def test_that_entities_but_short_plain_texts_are_refused(declared, tmp_path) -> 
     )
     with pytest.raises(TargetError, match="entities"):
         read_target(path)
+
+
+WHITES = (
+    "white", "hsl(0 0% 100%)", "hwb(0 100% 0%)", "lab(100 0 0)", "lch(100 0 0)", "oklab(1 0 0)", "oklch(1 0 0)",
+    "color(srgb 1 1 1)", "color(srgb-linear 1 1 1)", "color(display-p3 1 1 1)", "color(a98-rgb 1 1 1)",
+    "color(prophoto-rgb 1 1 1)", "color(rec2020 1 1 1)", "color(xyz 0.9505 1 1.089)", "color(xyz-d50 0.9643 1 0.8251)",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("white", WHITES)
+def test_that_white_paper_is_white_in_every_space_of_colours(white: str, svg) -> None:
+    red, green, blue, opacity = colour_of(white)
+    assert min(red, green, blue) > 0.995 and opacity == 1.0
+    paper = f'<rect width="100" height="100" fill="{white}"/><rect x="20" y="30" width="40" height="50"/>'
+    assert usual_outline(read_parts(svg(paper, 'viewBox="0 0 100 100"'))).size == pytest.approx((40.0, 50.0))
+
+
+def test_that_colours_of_light_are_those_of_the_screen() -> None:
+    for same in ("lab(54.29 80.82 69.9)", "oklch(0.62796 0.25768 29.234)", "color(xyz 0.4124 0.2126 0.0193)"):
+        assert colour_of(same)[:3] == pytest.approx((1.0, 0.0, 0.0), abs=0.06)
+    assert colour_of("color(srgb-linear 0.2140 0 0 / 50%)") == pytest.approx((0.5, 0.0, 0.0, 0.5), abs=1e-3)
+    assert colour_of("color(--own 1 1 1)") is None
