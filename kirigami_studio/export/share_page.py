@@ -131,7 +131,7 @@ def page_of(job: ExportJob, stem: str) -> tuple[str, dict[str, Any]]:
         f"style-src '{_digest(style)}'; script-src '{_digest(script)}'",
         "box": f"{left:.3f} {-top:.3f} {right - left:.3f} {top - bottom:.3f}",
         "target": "" if target is None else _path(target),
-        "outlined": ' hidden style="display:none"' if target is None else "",
+        "outlined": " hidden" if target is None else "",
         "unsaved": "" if job.record else " hidden",
         "facts": "".join(
             f"<tr><td>{html.escape(key.replace('_', ' '))}</td><td>{html.escape(text)}</td></tr>"

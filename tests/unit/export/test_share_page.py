@@ -107,6 +107,8 @@ def test_that_only_its_own_style_and_script_run_and_nothing_is_fetched(tmp_path:
         digest = base64.b64encode(hashlib.sha256(page.found[kind].encode()).digest()).decode()
         assert f"{kind}-src 'sha256-{digest}'" in page.policy
     assert page.policy.startswith("default-src 'none'") and page.links == []
+    assert " style=" not in path.read_text(encoding="utf-8").split("<body>")[1]  # the policy would not allow it
+    assert "[hidden] { display: none !important; }" in page.found["style"]
     assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", path.read_text(encoding="utf-8"))
 
 
