@@ -17,7 +17,7 @@ QUICK_TESTS = $(shell grep -rLE --include='test_*.py' 'torch|distributed|PySide6
 
 CATALOGUES := $(patsubst %.po,%.mo,$(wildcard resources/locale/*/LC_MESSAGES/*.po))
 
-.PHONY: help setup run test test-all test-durations fuzz soak pinned readers quick lint bench consumers demo states pairs pictures shapes figures notebook \
+.PHONY: help setup run test test-all test-durations fuzz soak pinned prints readers quick lint bench consumers demo states pairs pictures shapes figures notebook \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 

@@ -12,6 +12,7 @@ import math
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -98,8 +99,9 @@ def faults(seed: int, folder: Path, most: int = 6) -> list[str]:
     return found
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
+def played(faults: Callable[[int, Path], list[str]], about: str | None) -> int:
+    """Make as many designs as the command line asks for, and print the faults of each; 1 if there are any."""
+    parser = argparse.ArgumentParser(description=about)
     parser.add_argument("designs", type=int)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
@@ -118,4 +120,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(played(faults, __doc__))

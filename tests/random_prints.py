@@ -7,19 +7,16 @@ they are put together by ``pieces.json`` at angles of the motion.
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 import sys
-import tempfile
-import time
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 from manifold3d import Manifold, Mesh64
-from random_assemblies import posed
+from random_assemblies import played, posed
 from solid_reader import ReadBody, read_3mf, read_stl
 
 from kirigami_studio.assembly.options import PinOptions
@@ -100,21 +97,5 @@ def least_gap(bodies: dict[str, ReadBody], motion: Path, within: float) -> float
     return least
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("designs", type=int)
-    parser.add_argument("--seed", type=int, default=0)
-    asked = parser.parse_args()
-    bad, begun = 0, time.process_time()
-    for seed in range(asked.seed, asked.seed + asked.designs):
-        with tempfile.TemporaryDirectory() as folder:
-            found = faults(seed, Path(folder) / "out")
-        bad += bool(found)
-        sys.stdout.write(f"{seed}: {'; '.join(found) or 'as it should be'}\n")
-        sys.stdout.flush()
-    sys.stdout.write(f"{asked.designs} designs, {bad} bad, {time.process_time() - begun:.0f} s of processor time\n")
-    return int(bad > 0)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(played(faults, __doc__))
