@@ -29,6 +29,7 @@ help:
 	@echo "make test-durations  measure every test, for the choice that make test makes: tests/durations.json"
 	@echo "make fuzz    read INPUTS damaged files with every reader; bad ones are kept in build/fuzz"
 	@echo "make pinned  write DESIGNS random pinned designs and read them back without the program"
+	@echo "make prints  write PRINTS random designs on printed pins, and read them back by other libraries"
 	@echo "make readers  read ICONS drawings of npm packages, and compare them with what rsvg-convert paints"
 	@echo "make soak    call off 500 runs and undo 500 edits in one window, and tell what it holds"
 	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
