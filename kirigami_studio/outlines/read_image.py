@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from PIL import Image, ImageOps, UnidentifiedImageError
 from scipy import ndimage
 from shapely.geometry import Polygon
@@ -43,6 +44,9 @@ MOST_COLOURS, COLOUR_SIDE, LEAST_OF_COLOUR, LEAST_CHROMA = 8, 768, 0.005, 48
 MOST_PIXELS_IN_COLOUR = 25_000_000
 #: A picture of more regions is noise; a colour of more specks is texture.
 MOST_SPECKS, TEXTURE = 10_000, 200
+
+#: A shape in a picture is one to be asked about from this share of the largest one's area on; many make noise.
+ISLAND, MOST_ISLANDS = 0.1, 20
 
 #: As Pillow calls them; of an animation the first picture is read.
 FORMATS = ("PNG", "JPEG", "BMP", "WEBP", "TIFF", "GIF", "AVIF")
@@ -112,8 +116,23 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
         levels = _levels(content)
         ink = _ink(levels, threshold)
         ring, notes = trace(ink)
+        if threshold is None and not (levels.is_plain and is_alone(np.bincount(ndimage.label(ink > 0)[0].ravel())[1:])):
+            notes = (*notes, _choices())
         outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=(*levels.notes, *notes), unit="px")
         return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
+
+
+def is_alone(areas: npt.ArrayLike) -> bool:
+    """Whether none but the largest of several regions is large enough to be meant, by their areas."""
+    ranked = np.sort(np.asarray(areas, dtype=np.float64))[::-1]
+    return len(ranked) < 2 or ranked[1] < ISLAND * ranked[0] or ranked[0] < 0.5 * float(np.sum(ranked[MOST_ISLANDS:]))
+
+
+def _choices() -> str:
+    return tr(
+        "More than one shape may be meant in this picture: check what was taken. --object X,Y takes the one at a place, "
+        "--parts those that 'kirigami-studio parts FILE' lists."
+    )
 
 
 def image_parts(path: str | Path, threshold: float | None = None, in_colour: bool = True) -> SourceParts:
