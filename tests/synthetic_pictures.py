@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import collections
 import io
+import itertools
 import json
 import sys
 import tempfile
@@ -110,46 +111,46 @@ def painted(mask: Image.Image, colours: tuple[Colour, Colour], way: str, draw: n
     return image
 
 
+def known(shape: str, place: str, colours: str, way: str, seed: int = 0) -> Known:
+    """One picture; a shape that fills all of it has no ground."""
+    mask = shape_mask(shape, PLACES[place])
+    image = painted(mask, COLOURS[colours], way, np.random.default_rng(seed))
+    stream, ending = io.BytesIO(), ".jpg" if way in ("jpeg", "shadow", "light") else ".png"
+    image.save(stream, {".jpg": "JPEG", ".png": "PNG"}[ending], quality=80)
+    name = ", ".join((shape, place, colours, way))
+    return Known(name, way, stream.getvalue(), ending, np.asarray(mask) >= 128)
+
+
 def pictures(every: int = 1) -> Iterator[Known]:
     """Every so many of all combinations, the same ones each time."""
-    number = 0
-    for shape in SHAPES:
-        for place in PLACES:
-            for colours in COLOURS:
-                for way in WAYS:
-                    number += 1
-                    if number % every or (shape, place) == ("rounded square", "fills the picture"):
-                        continue
-                    if way == "transparent" and colours != "black on white":
-                        continue
-                    mask = shape_mask(shape, PLACES[place])
-                    image = painted(mask, COLOURS[colours], way, np.random.default_rng(number))
-                    stream, ending = io.BytesIO(), ".jpg" if way in ("jpeg", "shadow", "light") else ".png"
-                    image.save(stream, {".jpg": "JPEG", ".png": "PNG"}[ending], quality=80)
-                    wanted = np.asarray(mask) >= 128
-                    yield Known(f"{shape}, {place}, {colours}, {way}", way, stream.getvalue(), ending, wanted)
+    for number, words in enumerate(itertools.product(SHAPES, PLACES, COLOURS, WAYS), start=1):
+        shape, place, colours, way = words
+        is_whole = (shape, place) == ("rounded square", "fills the picture")
+        is_repeated = way == "transparent" and colours != "black on white"
+        if not (number % every or is_whole or is_repeated):
+            yield known(shape, place, colours, way, number)
 
 
-def overlap(known: Known, path: Path) -> float:
+def overlap(one: Known, path: Path) -> float:
     """IoU of a picture as it is read with its shape, holes filled."""
     from scipy import ndimage
     from skimage.draw import polygon2mask
 
     traced = trace_image(path)
     points = traced.outline.points * traced.scale + traced.centre
-    rows = known.mask.shape[0] - points[:, 1] - 0.5
-    drawn = polygon2mask(known.mask.shape, np.column_stack([rows, points[:, 0] - 0.5]))
+    rows = one.mask.shape[0] - points[:, 1] - 0.5
+    drawn = polygon2mask(one.mask.shape, np.column_stack([rows, points[:, 0] - 0.5]))
     # A ring that the picture cuts is filled where its hole is enclosed.
-    wanted = ndimage.binary_fill_holes(known.mask)
+    wanted = ndimage.binary_fill_holes(one.mask)
     return float(np.sum(drawn & wanted) / np.sum(drawn | wanted))
 
 
-def judged(known: Known, folder: Path) -> tuple[str, float]:
+def judged(one: Known, folder: Path) -> tuple[str, float]:
     """The result, one of same, asked, refused and silent; and the overlap."""
-    path = folder / f"known{known.ending}"
-    path.write_bytes(known.content)
+    path = folder / f"known{one.ending}"
+    path.write_bytes(one.content)
     try:
-        share = overlap(known, path)
+        share = overlap(one, path)
     except KirigamiError:
         return "refused", 0.0
     if share >= SAME:
@@ -162,11 +163,11 @@ def main() -> int:
     every = int(sys.argv[1]) if len(sys.argv) > 1 else 1
     by_kind: dict[str, collections.Counter[str]] = collections.defaultdict(collections.Counter)
     with tempfile.TemporaryDirectory() as place:
-        for known in pictures(every):
-            result, share = judged(known, Path(place))
-            by_kind[known.kind][result] += 1
+        for one in pictures(every):
+            result, share = judged(one, Path(place))
+            by_kind[one.kind][result] += 1
             if result == "silent":
-                sys.stdout.write(json.dumps({"silent": known.name, "iou": round(share, 3)}) + "\n")
+                sys.stdout.write(json.dumps({"silent": one.name, "iou": round(share, 3)}) + "\n")
     for kind, results in by_kind.items():
         sys.stdout.write(json.dumps({"kind": kind, **results}) + "\n")
     total = sum(by_kind.values(), collections.Counter())

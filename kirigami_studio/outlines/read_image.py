@@ -130,8 +130,8 @@ def is_alone(areas: npt.ArrayLike) -> bool:
 
 def _choices() -> str:
     return tr(
-        "More than one shape may be meant in this picture: check what was taken. --object X,Y takes the one at a place, "
-        "--parts those that 'kirigami-studio parts FILE' lists."
+        "More than one shape may be meant in this picture: check what was taken. --object X,Y takes the one at a "
+        "place, --parts those that 'kirigami-studio parts FILE' lists."
     )
 
 
