@@ -125,7 +125,7 @@ pinned: setup
 #: Icons of public packages, read and compared with an independent renderer: make readers ICONS=200 SEED=0
 ICONS ?= 200
 readers: setup
-	OMP_NUM_THREADS=1 $(BIN)/python tests/icons_read.py --icons $(ICONS) --seed $(SEED) --out build/readers
+	OMP_NUM_THREADS=1 $(BIN)/python tests/drawings_read.py --icons $(ICONS) --seed $(SEED) --out build/readers
 
 #: Random designs on printed pins, written and read back by lib3mf and numpy-stl.
 PRINTS ?= 40

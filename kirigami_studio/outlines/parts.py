@@ -81,6 +81,7 @@ class StrokeStyle:
     cap: Cap = "round"  #: "round", "flat" or "square"
     join: Corner = "round"  #: "round", "mitre" or "bevel"
     mitre_limit: float = 4.0  #: length of a corner over the width, above which it is cut off
+    is_on_paper: bool = False  #: whether the width is that of a plotter's pen, which says nothing of the drawing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -340,12 +341,12 @@ def _usual(source: SourceParts) -> UsualChoice:
         return UsualChoice(numbers, numbers, False, is_one, region=united([part.region for part in letters], size))
     lines = _without_frame(lines, source.paper) if len(parts) > 1 else lines
     extent = _extent(lines)
-    broad = [part for part in lines if part.pen.width >= BROAD * extent]
-    thin = [part for part in lines if part.pen.width < BROAD * extent]
+    broad = [part for part in lines if not part.pen.is_on_paper and part.pen.width >= BROAD * extent]
+    thin = [part for part in lines if part not in broad]
     solid = {part.number: part.seen(size) for part in shapes}
     solid.update((part.number, part.seen(size, True)) for part in broad)
     open_at = _open_contour(thin, solid, size)
-    middling = [part for part in thin if part.pen.width >= MIDDLING * extent]
+    middling = [part for part in thin if not part.pen.is_on_paper and part.pen.width >= MIDDLING * extent]
     shown = {part.number: part.seen(size, True) for part in middling} if open_at is None else {}
     is_round = bool(shown) and _is_round(middling, solid)
     shown = shown if is_round or _shows_more(middling, shown, solid, size) else {}

@@ -30,13 +30,14 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import Cap, Corner, SourceParts, StrokeStyle, text_left_out
 from kirigami_studio.outlines.pieces import painted
 from kirigami_studio.outlines.read_svg import parts_of_drawing
-from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
+from kirigami_studio.outlines.source_file import TimeBudget, decoded
 from kirigami_studio.outlines.svg_drawing import LEAST_SEEN, Drawn, Paint, SvgDrawing
 
 #: The library's calls carry no types.
 pypdfium2: Any = untyped_pypdfium2
 pdfium: Any = untyped_pdfium
 
+DAMAGED = "source.pdf_damaged"
 MM_PER_POINT = 25.4 / 72.0
 #: Deviation of flattened curves from the true ones, share of the page's size.
 FLATNESS = 1.0 / 8000.0
@@ -59,10 +60,7 @@ def read_pdf(path: str | Path) -> Outline:
     TargetError
         Not a PDF, locked by a password, too large, nothing drawn but texts and pictures, or an open contour.
     """
-    path = Path(path)
-    content = read_bytes(path)
-    with decoding(path, "source.pdf_damaged"):
-        return usual_outline(_parts(path.stem, content))
+    return decoded(path, DAMAGED, lambda *file: usual_outline(_parts(*file)))
 
 
 def pdf_parts(path: str | Path) -> SourceParts:
@@ -73,13 +71,10 @@ def pdf_parts(path: str | Path) -> SourceParts:
     TargetError
         As :func:`read_pdf`, but for open contours.
     """
-    path = Path(path)
-    content = read_bytes(path)
-    with decoding(path, "source.pdf_damaged"):
-        return _parts(path.stem, content)
+    return decoded(path, DAMAGED, _parts)
 
 
-def _parts(name: str, content: bytes) -> SourceParts:
+def _parts(path: Path, content: bytes) -> SourceParts:
     budget = TimeBudget()
     if content.lstrip()[:4] == b"%!PS":
         raise TargetError("pdf.postscript")
@@ -95,7 +90,7 @@ def _parts(name: str, content: bytes) -> SourceParts:
             read = _drawing(document, budget)
         finally:
             document.close()
-    return parts_of_drawing(name, read, "mm", budget)
+    return parts_of_drawing(path.stem, read, "mm", budget)
 
 
 def _refuse_bombs(content: bytes, budget: TimeBudget) -> None:

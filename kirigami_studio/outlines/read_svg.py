@@ -26,11 +26,12 @@ from kirigami_studio.outlines.parts import (
     parts_of_region,
     stroked,
 )
-from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
+from kirigami_studio.outlines.source_file import TimeBudget, decoded
 from kirigami_studio.outlines.svg_drawing import PIXELS_PER_MM, WHITE, Drawn, Paint, SvgDrawing, svg_drawing
 from kirigami_studio.outlines.svg_safety import checked_svg
 from kirigami_studio.outlines.text_curves import text_parts
 
+DAMAGED = "source.svg_damaged"
 #: An open stroke whose ends are nearer than this share of its size is meant to be closed.
 WIDEST_GAP = 0.02
 #: A white rectangle is paper if it covers this share of the page.
@@ -51,10 +52,7 @@ def read_svg(path: str | Path) -> Outline:
         Not SVG, larger than 20 MB, with entities that are no plain texts, nothing drawn, several letters only, or an
         open contour.
     """
-    path = Path(path)
-    content = read_bytes(path)
-    with decoding(path, "source.svg_damaged"):
-        return usual_outline(_parts(path.stem, content))
+    return decoded(path, DAMAGED, lambda *file: usual_outline(_parts(*file)))
 
 
 def svg_parts(path: str | Path) -> SourceParts:
@@ -65,18 +63,15 @@ def svg_parts(path: str | Path) -> SourceParts:
     TargetError
         As :func:`read_svg`, but for open contours and letters.
     """
-    path = Path(path)
-    content = read_bytes(path)
-    with decoding(path, "source.svg_damaged"):
-        return _parts(path.stem, content)
+    return decoded(path, DAMAGED, _parts)
 
 
-def _parts(name: str, content: bytes) -> SourceParts:
+def _parts(path: Path, content: bytes) -> SourceParts:
     budget = TimeBudget()
     root, width_mm = checked_svg(content)
     unit = "px" if width_mm is None else "mm"
     read = svg_drawing(root, 1.0 if width_mm is None else 1.0 / PIXELS_PER_MM, budget)
-    return parts_of_drawing(name, read, unit, budget)
+    return parts_of_drawing(path.stem, read, unit, budget)
 
 
 def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget) -> SourceParts:
