@@ -21,6 +21,7 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.outlines.css_shapes import ELLIPSE_VERTICES, PLACES, basic_shape
 from kirigami_studio.outlines.parts import Cap, Corner, StrokeStyle, stroked
 from kirigami_studio.outlines.pieces import painted
 from kirigami_studio.outlines.source_file import TimeBudget
@@ -38,8 +39,6 @@ PIXELS_PER_MM = 96.0 / 25.4
 LEAST_SEEN = 0.01
 #: Levels of red, green and blue from which on paint is white.
 WHITE = 250.0 / 255.0
-#: Vertices of an ellipse: its chords are nearer to it than to what is flattened otherwise.
-ELLIPSE_VERTICES = 128
 #: Steps from one gradient to another that its stops may be taken from.
 MOST_LINKS = 8
 
@@ -51,8 +50,12 @@ GROUPS = frozenset({"g", "a", "svg", "switch", "use", "symbol"})
 SHAPES = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 LENGTH = re.compile(rf"\s*({NUMBER.pattern})\s*([a-zA-Z]*|%)\s*")
+#: Functions of CSS that change what is seen of a shape, and elements of filters that change colours alone.
+FILTERS = re.compile(r"blur|shadow", re.IGNORECASE)
+RECOLOURING = frozenset({"feColorMatrix", "feComponentTransfer", ""})
+#: Letters of a shape of CSS that is looked at.
+LONGEST_SHAPE = 10_000
 TRANSFORM = re.compile(r"([a-zA-Z]+)\s*\(([^()]*)\)")
-PLACES = {"left": 0.0, "top": 0.0, "center": 0.5, "right": 1.0, "bottom": 1.0}
 Paint = tuple[float, float, float, float]
 
 
@@ -185,6 +188,8 @@ class _Painter:
         opacity = frame.opacity * share_of(style.get("opacity"))
         if style.get("display", "").strip() == "none" or (opacity < LEAST_SEEN and not frame.makes_clip):
             return
+        if not frame.makes_clip and self._changes_shape(style.get("filter", "none").strip()):
+            self._say("filter", tr("Filters such as blur and shadows were left out."))
         inner = replace(frame, style=style, opacity=opacity)
         inner = replace(inner, matrix=frame.matrix @ self._transform(element, inner))
         inner = self._clipped(element, inner)
@@ -354,6 +359,13 @@ class _Painter:
             server = other
         return None
 
+    def _changes_shape(self, stated: str) -> bool:
+        """Whether a filter does more than to change colours."""
+        if (link := REFERENCE.match(stated)) is None:
+            return FILTERS.search(stated) is not None
+        source = self._named.get(link["name"])
+        return source is not None and any(tag_of(one) not in RECOLOURING for one in source)
+
     # clip paths and masks --------------------------------------------------------------------------------------------
 
     def _clipped(self, element: Element, frame: _Frame) -> _Frame:
@@ -365,15 +377,36 @@ class _Painter:
                 continue
             link = REFERENCE.match(stated)
             source = self._named.get(link["name"]) if link is not None else None
-            if source is None or tag_of(source) != {"clip-path": "clipPath", "mask": "mask"}[kind]:
-                if link is None:
+            if link is None:
+                region = self._basic_shape(stated, element, frame) if kind == "clip-path" else None
+                if region is None:
                     self._say("clip", tr("Clip paths of other kinds are not followed. Cut the shape itself."))
-                continue
-            if source in frame.inside:
-                continue
-            region = self._region_of(source, element, frame)
+                    continue
+            else:
+                is_such = source is not None and tag_of(source) == {"clip-path": "clipPath", "mask": "mask"}[kind]
+                if source is None or not is_such or source in frame.inside:
+                    continue
+                region = self._region_of(source, element, frame)
             frame = replace(frame, clip=region if frame.clip is None else region.intersection(frame.clip))
         return frame
+
+    def _basic_shape(self, stated: str, element: Element, frame: _Frame) -> BaseGeometry | None:
+        """The region of a shape that CSS states, on the page; None where it is not understood."""
+        shape = basic_shape(stated[:LONGEST_SHAPE])
+        if shape is None:
+            return None
+        if shape.reference == "view-box":
+            box = (0.0, 0.0, *frame.view)
+        else:
+            box = self._extent(element, frame)
+            if shape.reference != "fill-box" and self._paint(frame.style, "stroke", 1.0) is not None:
+                half = 0.5 * self._length_of(frame.style.get("stroke-width", "1"), frame, None, 1.0)
+                box = (box[0] - half, box[1] - half, box[2] + half, box[3] + half)
+        found = shape.ring(box, lambda word, whole: self._length_of(word, frame, None, np.nan, whole))
+        if found is None:
+            return None
+        ring, is_even_odd = found
+        return painted([checked(_placed(ring, frame.matrix))], is_even_odd) if len(ring) else Polygon()
 
     def _region_of(self, source: Element, element: Element, frame: _Frame) -> BaseGeometry:
         """The region of a clip path or a mask for an element, on the page."""

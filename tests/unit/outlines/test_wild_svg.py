@@ -78,6 +78,16 @@ def shown(svg, body: str, attributes: str = 'viewBox="0 0 100 100"') -> tuple[fl
          '<g clip-path="url(#c)" transform="translate(1 2)"><rect width="90" height="90"/></g>', (6, 7, 26, 17)),
         ('<clipPath id="c" clipPathUnits="objectBoundingBox"><rect width=".5" height=".5"/></clipPath>'
          '<rect x="10" y="10" width="20" height="40" clip-path="url(#c)"/>', (10, 10, 20, 30)),
+        ('<rect x="10" y="20" width="40" height="20" clip-path="circle(5px)"/>', (25, 25, 35, 35)),
+        ('<rect x="10" y="20" width="40" height="20" clip-path="circle(closest-side at 25% 50%)"/>', (10, 20, 30, 40)),
+        ('<rect x="10" y="20" width="40" height="20" style="clip-path:ellipse(25% 50% at right)"/>', (40, 20, 50, 40)),
+        ('<rect x="10" y="20" width="40" height="20" clip-path="inset(5px 10% 0 10px)"/>', (20, 25, 46, 40)),
+        ('<rect x="10" y="20" width="40" height="20" clip-path="inset(1px 2px round 4px)"/>', (12, 21, 48, 39)),
+        ('<rect width="40" height="20" clip-path="polygon(evenodd, 0 0, 50% 0, 10px 100%)"/>', (0, 0, 20, 20)),
+        ('<rect width="9" height="9" clip-path="view-box polygon(0 0, 5% 0, 5% 4%, 0 4%)"/>', (0, 0, 5, 4)),
+        ('<rect x="10" y="10" width="20" height="20" stroke="red" stroke-width="2" clip-path="inset(0) fill-box"/>',
+         (10, 10, 30, 30)),
+        ('<g clip-path="inset(50% 0 0 0)" transform="scale(2)"><rect width="9" height="9"/></g>', (0, 9, 18, 18)),
         ('<clipPath id="c"><rect width="20" height="90"/></clipPath><clipPath id="d" clip-path="url(#c)">'
          '<rect width="90" height="20"/></clipPath><rect width="90" height="90" style="clip-path:url(#d)"/>',
          (0, 0, 20, 20)),
