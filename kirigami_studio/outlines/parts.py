@@ -5,6 +5,7 @@ of the source, y up; :mod:`~kirigami_studio.outlines.merging` makes one outline 
 
 One rule says which of them are the silhouette that is seen, for all kinds of files (:class:`UsualChoice`):
 
+- What is hardly seen counts where nothing else is closed.
 - What is filled counts with its stroke.  Broad lines are painted; lines of a middling width are if they run round
   filled shapes or show more than what they enclose; thin lines count by what they enclose.
 - Of what is painted and of what thin lines enclose, the silhouette with the larger area is taken, whatever lies inside.
@@ -101,6 +102,7 @@ class Part:
     is_named: bool = True  #: whether the name is the source's own
     is_letter: bool = False  #: whether it is a letter of a text
     is_aside: bool = False  #: whether it is a measure or a construction line: it counts where nothing else is closed
+    is_faint: bool = False  #: whether it is hardly seen, such as a shadow: it counts where nothing else is closed
     #: (L, 2) float, source units; of a shape with one subpath that subpath, crossings and all.
     ring: FloatArray | None = None
 
@@ -332,6 +334,11 @@ def _usual(source: SourceParts) -> UsualChoice:
     parts, size = source.parts, source.size
     if any(part.is_closed and not part.is_aside for part in parts):
         parts = tuple(part for part in parts if not part.is_aside)
+    faint = [part for part in parts if part.is_faint and part.is_closed]
+    if any(part.is_closed and not part.is_faint for part in parts):
+        parts = tuple(part for part in parts if not part.is_faint)
+    else:
+        faint = []
     shapes = [part for part in parts if part.kind is DrawnPartKind.FILLED and not part.is_letter]
     lines = [part for part in parts if part.kind is not DrawnPartKind.FILLED]
     letters = [part for part in parts if part.is_letter]
@@ -364,6 +371,7 @@ def _usual(source: SourceParts) -> UsualChoice:
     silhouette = Polygon(enclosed(united([kinds[part.number] for part in taken], size))[0])
     numbers = tuple(part.number for part in _outer(taken, kinds))
     others = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
+    others += [part.region for part in faint]
     considered = tuple(number for number in kinds if takes_rings or not _is_letter_apart(source, number, taken))
     closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
     plain = (

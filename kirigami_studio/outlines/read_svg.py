@@ -34,6 +34,8 @@ from kirigami_studio.outlines.text_curves import text_parts
 DAMAGED = "source.svg_damaged"
 #: An open stroke whose ends are nearer than this share of its size is meant to be closed.
 WIDEST_GAP = 0.02
+#: Opacity below which a shape is hardly seen, such as a shadow.
+FAINT = 0.3
 #: A white rectangle is paper if it covers this share of the page.
 PAPER = 0.9
 
@@ -118,7 +120,9 @@ def _part(shape: Drawn, paint: Paint | None) -> Part:
     pen = shape.pen if shape.stroke is not None else StrokeStyle()
     rings = [chain for chain in shape.chains if len(chain) > 2]
     ring = rings[0] if len(rings) == 1 and shape.clip is None else None
-    return Part(0, shape.name, shape.layer, _colour(paint), DrawnPartKind.FILLED, Polygon(), lines, pen, ring=ring)
+    faint = max(one[3] for one in (shape.fill, shape.stroke) if one is not None) < FAINT
+    kind = DrawnPartKind.FILLED
+    return Part(0, shape.name, shape.layer, _colour(paint), kind, Polygon(), lines, pen, is_faint=faint, ring=ring)
 
 
 def _filled_parts(shape: Drawn) -> list[Part]:

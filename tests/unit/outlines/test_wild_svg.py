@@ -231,3 +231,13 @@ def test_that_colours_of_light_are_those_of_the_screen() -> None:
         assert colour_of(same)[:3] == pytest.approx((1.0, 0.0, 0.0), abs=0.06)
     assert colour_of("color(srgb-linear 0.2140 0 0 / 50%)") == pytest.approx((0.5, 0.0, 0.0, 0.5), abs=1e-3)
     assert colour_of("color(--own 1 1 1)") is None
+
+
+def test_that_a_shadow_that_is_hardly_seen_does_not_belong_to_the_shape(svg) -> None:
+    shadow = '<rect x="{}" y="4" width="40" height="40" opacity=".15"/>'
+    shape = '<rect width="40" height="40" fill="red"/>'
+    path = svg(shadow.format(4) + shape)
+    assert read_target(path).size == (40.0, 40.0)
+    assert read_parts(path).is_ambiguous
+    assert not read_parts(svg(shape + '<rect x="4" y="4" width="9" height="9" opacity=".15"/>')).is_ambiguous
+    assert read_target(svg(shadow.format(4))).size == (40.0, 40.0)
