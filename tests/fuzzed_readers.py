@@ -63,7 +63,6 @@ def sources(reader: str) -> list[tuple[bytes, float]]:
 
 def whole(reader: str) -> list[bytes]:
     """Files that the program itself writes, and small ones of every kind that it reads."""
-    from attacked_readers import KINDS
 
     if reader in ("check", "dxf", "svg", "target", "parts", "carried", "opened", "pasted") or reader.startswith(
         "target-"
