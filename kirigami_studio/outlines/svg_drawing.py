@@ -7,6 +7,7 @@ drawings, ``switch``, transforms, clip paths and masks are resolved here; the ca
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -25,7 +26,7 @@ from kirigami_studio.outlines.css_shapes import ELLIPSE_VERTICES, PLACES, basic_
 from kirigami_studio.outlines.parts import Cap, Corner, StrokeStyle, stroked
 from kirigami_studio.outlines.pieces import painted
 from kirigami_studio.outlines.source_file import TimeBudget
-from kirigami_studio.outlines.svg_curves import checked, flattened
+from kirigami_studio.outlines.svg_curves import Vertex, checked, flattened, turned, vertices_of
 from kirigami_studio.outlines.svg_safety import MM_PER_UNIT, reference_of, tag_of
 from kirigami_studio.outlines.svg_style import REFERENCE, Cascade, Properties, colour_of, computed, share_of
 from kirigami_studio.outlines.text_curves import Text
@@ -53,6 +54,9 @@ LENGTH = re.compile(rf"\s*({NUMBER.pattern})\s*([a-zA-Z]*|%)\s*")
 #: Functions of CSS that change what is seen of a shape, and elements of filters that change colours alone.
 FILTERS = re.compile(r"blur|shadow", re.IGNORECASE)
 RECOLOURING = frozenset({"feColorMatrix", "feComponentTransfer", ""})
+#: Lines that have markers, how many are painted at most, and their lengths.
+MARKED, MOST_MARKERS = frozenset({"path", "line", "polyline", "polygon"}), 2_000
+MARKER_SIZE = ("markerWidth", "markerHeight")
 #: Letters of a shape of CSS that is looked at.
 LONGEST_SHAPE = 10_000
 TRANSFORM = re.compile(r"([a-zA-Z]+)\s*\(([^()]*)\)")
@@ -139,6 +143,7 @@ class _Painter:
         self._texts: list[Text] = []
         self._said: dict[str, str] = {}
         self._clips: dict[tuple[Element, bytes], BaseGeometry] = {}
+        self._marked = 0
 
     def drawing(self) -> SvgDrawing:
         size = self._page()
@@ -200,6 +205,8 @@ class _Painter:
                 self._texts += self._lines(element, inner)
         elif tag in SHAPES:
             yield from self._shape(element, tag, inner)
+            if tag in MARKED and not frame.makes_clip and not frame.is_measured:
+                yield from self._markers(element, tag, inner)
         else:
             yield from self._group(element, tag, inner)
 
@@ -274,9 +281,66 @@ class _Painter:
             slack = 0.5 * width if stroke is not None else 0.0
             extent = shapely.box(*(corners.min(axis=0) - slack), *(corners.max(axis=0) + slack))
             clip = None if clip.covers(extent) else clip
-        if any(style.get(f"marker-{end}", "none").strip() != "none" for end in ("start", "mid", "end")):
-            self._say("marker", tr("Arrow heads and other markers on lines were left out."))
         yield Drawn(chains, fill, stroke, rule == "evenodd", pen, _name(element) or frame.name, frame.layer, clip)
+
+    def _markers(self, element: Element, tag: str, frame: _Frame) -> Iterator[Drawn]:
+        """What is painted on the vertices of a line."""
+        found: list[Element | None] = []
+        for end in ("start", "mid", "end"):
+            link = REFERENCE.match(frame.style.get(f"marker-{end}", "none"))
+            marker = None if link is None else self._named.get(link["name"])
+            found.append(None if marker is None or tag_of(marker) != "marker" or marker in frame.inside else marker)
+        if not any(one is not None for one in found) or frame.style.get("visibility", "visible").strip() != "visible":
+            return
+        width = self._length_of(frame.style.get("stroke-width", "1"), frame, None, 1.0)
+        vertices = self._vertices(element, tag, frame)
+        for index, vertex in enumerate(vertices):
+            marker = found[0 if index == 0 else 2 if index == len(vertices) - 1 else 1]
+            if marker is None:
+                continue
+            self._budget.check()
+            self._marked += 1
+            if self._marked > MOST_MARKERS:
+                self._say("marker", tr("Arrow heads and other markers on lines were left out."))
+                return
+            yield from self._marker(marker, vertex, width, index == 0, frame)
+
+    def _marker(self, marker: Element, vertex: Vertex, width: float, begins: bool, frame: _Frame) -> Iterator[Drawn]:
+        stated = marker.get("orient", "0").strip()
+        turn = vertex.way if stated.startswith("auto") else _angle(stated)
+        turn += np.pi if stated == "auto-start-reverse" and begins else 0.0
+        size = [self._length_of(marker.get(name, "3"), frame, axis, 3.0) for axis, name in enumerate(MARKER_SIZE)]
+        scale = 1.0 if marker.get("markerUnits", "").strip() == "userSpaceOnUse" else width
+        if not (np.isfinite(turn) and scale > 0.0 and min(size) > 0.0):
+            return
+        view = _viewport(marker, (0.0, 0.0, size[0], size[1]))
+        inner = self._view(marker, (size[0], size[1]))
+        origin = [
+            PLACES[word] * inner[axis] if (word := marker.get(name, "0").strip()) in PLACES else _number(word, 0.0)
+            for axis, name in enumerate(("refX", "refY"))
+        ]
+        across, down, _ = view @ (*origin, 1.0)
+        place = frame.matrix @ _moved(*vertex.place) @ np.diag([scale, scale, 1.0])
+        cos, sin = np.cos(turn), np.sin(turn)
+        place = place @ np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ _moved(-across, -down)
+        blank = _Frame(place @ view, inner, opacity=frame.opacity, clip=frame.clip, layer=frame.layer)
+        style = self._style(marker, blank)
+        if style.get("overflow", "hidden").strip() not in ("visible", "auto"):
+            window = Polygon(_placed(np.array([(x * size[0], y * size[1]) for x, y in CORNERS]), place))
+            blank = replace(blank, clip=window if frame.clip is None else window.intersection(frame.clip))
+        yield from self._children(marker, replace(blank, style=style, inside=(*frame.inside, marker)))
+
+    def _vertices(self, element: Element, tag: str, frame: _Frame) -> list[Vertex]:
+        """The vertices of a line in its user space."""
+        if tag == "path":
+            path = svgelements.Path()
+            with contextlib.suppress(ValueError, IndexError, TypeError, AttributeError, ArithmeticError):
+                path.parse(element.get("d", ""))
+            return vertices_of(path)
+        chains = self._chains(element, tag, replace(frame, matrix=np.eye(3)))
+        points = chains[0] if chains else np.zeros((0, 2))
+        ways = np.diff(points, axis=0)
+        return turned(points, [np.zeros(2), *ways], [*ways, np.zeros(2)])
 
     def _chains(self, element: Element, tag: str, frame: _Frame) -> list[FloatArray]:
         """The subpaths of a shape on the page."""
@@ -335,7 +399,9 @@ class _Painter:
             if text.lower() == "none":
                 return None
             paint = colour_of(text, style.get("color", "black"))
-            if paint is None and not text.lower().startswith("context-"):
+            if text.lower().startswith("context-"):
+                paint = (0.5, 0.5, 0.5, 1.0)  # of the line that a marker is on
+            elif paint is None:
                 paint = (0.0, 0.0, 0.0, 1.0) if kind == "fill" else None
         if paint is None or paint[3] * opacity < LEAST_SEEN:
             return None
