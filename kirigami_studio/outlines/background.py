@@ -179,7 +179,7 @@ def level_of(distance: FloatArray, least: float) -> tuple[float, bool]:
 
 
 def _fades(smooth: FloatArray, level: float, widest: BoolArray | None) -> bool:
-    """Whether much beside the silhouette of a level hangs together with it: a shadow, or a paler part of the shape."""
+    """Whether a shadow or a paler part of the shape hangs together with a level's silhouette."""
     whole = silhouette(smooth, level)
     if widest is None:
         return False
@@ -282,7 +282,7 @@ def _ground(small: FloatArray, border: BoolArray) -> tuple[FloatArray, BoolArray
 
 
 def _fitted(terms: FloatArray, seen: FloatArray, begun: BoolArray | None = None) -> tuple[FloatArray, BoolArray]:
-    """Fit colours (N, C) by terms (N, K), and which of them follow: what is off by more is another thing.
+    """Fit colours (N, C) by terms (N, K), and which of them follow: others are another thing.
 
     Parameters
     ----------

@@ -146,7 +146,7 @@ class Shown(NamedTuple):
 
 @dataclass(slots=True)
 class Seen:
-    """What is visible in a drawing, and what is not."""
+    """Entities that are visible in a drawing, and names of those that are not."""
 
     curves: list[Shown] = field(default_factory=list)
     fills: list[Shown] = field(default_factory=list)
@@ -418,7 +418,7 @@ def _refuse_bombs(drawing: Drawing) -> None:
 
 
 class Around(NamedTuple):
-    """What is around entities: how many blocks, the layer that the innermost shows as, and what is seen of it."""
+    """Blocks around entities: number, layer of the innermost, region in which it is seen."""
 
     depth: int = 0
     layer: str = LAYER_0
@@ -455,7 +455,10 @@ def _unfolded(
 
 
 def _clip_of(insert: Insert, seen: Seen) -> BaseGeometry | None:
-    """The region in which a block is seen, drawing units; None where all of it is, or its clip is not followed."""
+    """The region in which a block is seen, drawing units; None where nothing is cut off.
+
+    A clip that is not followed is kept by the block's name.
+    """
     stated = insert.origin_of_copy or insert  # copies have no clip of their own
     if not (isinstance(stated, Insert) and stated.has_extension_dict):
         return None

@@ -123,7 +123,7 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
 
 
 def is_alone(areas: npt.ArrayLike) -> bool:
-    """Whether none but the largest of several regions is large enough to be meant, by their areas."""
+    """Whether only the largest of several regions can be meant, by their areas."""
     ranked = np.sort(np.asarray(areas, dtype=np.float64))[::-1]
     return len(ranked) < 2 or ranked[1] < ISLAND * ranked[0] or ranked[0] < 0.5 * float(np.sum(ranked[MOST_ISLANDS:]))
 

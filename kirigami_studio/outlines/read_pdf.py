@@ -96,7 +96,7 @@ def _parts(path: Path, content: bytes) -> SourceParts:
 
 
 def _unpacked(content: bytes, budget: TimeBudget) -> bool:
-    """Refuse a file whose streams unpack to more than PDFium should hold; whether it states layers."""
+    """Refuse a file that unpacks to more than PDFium should hold; whether it states layers."""
     left = MOST_UNPACKED * 1_000_000
     has_layers = LAYERS in content
     for start in STREAM.finditer(content):
@@ -211,7 +211,7 @@ def _set_of(one: Any, index: int, kind: int, outer: _Set) -> _Set:
 
 
 def _hidden(page: Any, size: tuple[float, float], budget: TimeBudget) -> frozenset[_Set]:
-    """The sets of objects that are not seen because their layers are off: PDFium paints each of them alone."""
+    """The sets of objects that layers hide: PDFium paints each of them alone."""
     sets: dict[_Set, list[Any]] = {}
 
     def collect(get: Callable[[int], Any], count: int, outer: _Set, depth: int) -> None:

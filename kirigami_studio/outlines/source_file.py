@@ -100,7 +100,13 @@ def decoding(path: Path, damaged: str) -> Iterator[None]:
 def decoded(
     path: str | Path, damaged: str, decode: Callable[[Path, bytes], Decoded], most_megabytes: int = 20
 ) -> Decoded:
-    """Read a file and decode it, its name in every problem; see :func:`read_bytes` and :func:`decoding`."""
+    """Read a file and decode it, its name in every problem.
+
+    Raises
+    ------
+    TargetError
+        As :func:`read_bytes` and :func:`decoding`.
+    """
     path = Path(path)
     content = read_bytes(path, most_megabytes)
     with decoding(path, damaged):

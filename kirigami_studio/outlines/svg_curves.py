@@ -99,7 +99,7 @@ def vertices_of(path: Any) -> list[Vertex]:
 
 
 def turned(points: Sequence[FloatArray], before: Sequence[FloatArray], behind: Sequence[FloatArray]) -> list[Vertex]:
-    """Vertices (2,) with the directions that bisect those in which each is reached and left, (2,) or zero."""
+    """Vertices (2,) with directions that bisect those in which each is reached and left."""
     found = []
     for point, one, other in zip(points, before, behind, strict=True):
         units = [way / length for way in (one, other) if (length := float(np.hypot(*way))) > 0.0]

@@ -284,7 +284,7 @@ class _Painter:
         yield Drawn(chains, fill, stroke, rule == "evenodd", pen, _name(element) or frame.name, frame.layer, clip)
 
     def _markers(self, element: Element, tag: str, frame: _Frame) -> Iterator[Drawn]:
-        """What is painted on the vertices of a line."""
+        """Shapes of the markers on the vertices of a line."""
         found: list[Element | None] = []
         for end in ("start", "mid", "end"):
             link = REFERENCE.match(frame.style.get(f"marker-{end}", "none"))
