@@ -38,7 +38,7 @@ ATTACKS = TESTS / "data" / "attacks"
 #: Seconds of processor time, and bytes of memory beside what the program takes, that one file may cost.
 MOST_SECONDS, MOST_MEMORY = 5.0, 2 * 2**30
 #: Seconds by the clock after which a file that is still being read is given up: the machine may be busy.
-MOST_WAITING = 60.0
+MOST_WAITING = 600.0
 #: Files that one process reads.
 SHARE = 1000
 #: A seed of so many bytes is chosen half as often as an empty one, and one that hurt once this much more seldom.
