@@ -1,19 +1,21 @@
-"""The one value that all sources become: a closed, simple, oriented, centred silhouette of unit area."""
+"""The one value that all sources become: a closed, simple, centred silhouette of unit area, and the holes in it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.plain_text import LONGEST_NOTE, plain_line
-from kirigami_studio.outlines.contour import area_and_centroid, as_contour, tidy, unit_frame
+from kirigami_studio.foundation.words import tr_n
+from kirigami_studio.outlines.contour import SMALLEST_AREA, area_and_centroid, as_contour, tidy, unit_frame
 from kirigami_studio.outlines.crossings import untangled
 from kirigami_studio.outlines.nodes import Nodes
 
@@ -21,22 +23,24 @@ from kirigami_studio.outlines.nodes import Nodes
 NORMALISATION_TOLERANCE = 1e-9
 #: Notes of one outline: sources give a few.
 MOST_NOTES = 100
+#: Holes of one outline; and the smallest, as a share of the area within the outer ring: no panel is so small.
+MOST_HOLES, SMALLEST_HOLE = 100, 2e-4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outline:
-    """A target silhouette in its normal frame.
+    """A target silhouette in its normal frame: an outer ring, and the holes in it.
 
     Two outlines are equal when their vertices are: name, notes, place and nodes do not change what a generator sees.
 
     Raises
     ------
     TargetError
-        ``points`` is not such a polygon; ``from_points`` makes one from raw vertices.
+        ``points`` and ``holes`` are not such a polygon; ``from_points`` makes one from raw vertices.
     """
 
-    #: (L, 2); vertices of a simple polygon, counter-clockwise, y up, first vertex not repeated, area centroid at the
-    #: origin, area 1 (dimensionless); read-only.
+    #: (L, 2); vertices of the outer ring, a simple polygon, counter-clockwise, y up, first vertex not repeated, area
+    #: centroid at the origin, area 1 (dimensionless); read-only.
     points: FloatArray
     name: str = "target"  #: name shown to the user, one plain line whatever the source has
     #: What was changed on the way from the source, one sentence each; at most :data:`MOST_NOTES`.
@@ -46,6 +50,8 @@ class Outline:
     #: (x, y), mm; of its area centroid on the drawing board, y up; None for an outline that was not drawn there.
     place: tuple[float, float] | None = None
     nodes: Nodes | None = None  #: its points and handles, when it was drawn with them
+    #: (H, 2) each; simple rings within the outer one, clockwise, apart from each other and from it; same frame.
+    holes: tuple[FloatArray, ...] = ()
 
     def __post_init__(self) -> None:
         # Adding 0.0 turns -0.0 into 0.0, so equal outlines also have equal bytes, hence equal hashes.
@@ -53,27 +59,39 @@ class Outline:
         area, centroid = area_and_centroid(points)
         if abs(area - 1.0) > NORMALISATION_TOLERANCE or np.max(np.abs(centroid)) > NORMALISATION_TOLERANCE:
             raise TargetError("outline.not_normalised", area=area, x=float(centroid[0]), y=float(centroid[1]))
-        if not Polygon(points).is_valid:
+        holes = tuple(as_contour(hole) + 0.0 for hole in self.holes)
+        if not Polygon(points, holes).is_valid:
             raise TargetError("outline.crosses_itself")
+        if len(holes) > MOST_HOLES:
+            raise TargetError("outline.too_many_holes", holes=len(holes), limit=MOST_HOLES)
         if self.nodes is not None and int(self.nodes.at.max()) >= len(points):
             raise TargetError("outline.no_such_vertex", vertices=len(points), index=int(self.nodes.at.max()))
-        points.setflags(write=False)
+        for ring in (points, *holes):
+            ring.setflags(write=False)
         object.__setattr__(self, "points", points)
+        object.__setattr__(self, "holes", holes)
         object.__setattr__(self, "name", plain_line(self.name))
         object.__setattr__(self, "notes", tuple(plain_line(note, LONGEST_NOTE) for note in self.notes[:MOST_NOTES]))
 
     @classmethod
     def from_points(
-        cls, points: npt.ArrayLike, name: str = "target", notes: Iterable[str] = (), unit: str = ""
+        cls,
+        points: npt.ArrayLike,
+        name: str = "target",
+        notes: Iterable[str] = (),
+        unit: str = "",
+        holes: Sequence[npt.ArrayLike] = (),
     ) -> Outline:
         """Clean, orient, centre and normalise raw vertices (y up).
 
         Parameters
         ----------
         points : (L, 2) float, in ``unit``
-            Vertices in order; either orientation, the first may be repeated at the end.
+            Vertices of the outer ring in order; either orientation, the first may be repeated at the end.
         name, notes, unit
             Kept on the outline; what had to be repaired is added to ``notes``.
+        holes : sequence of (H, 2) float, in ``unit``
+            Rings of what is missing; those that overlap become one, small ones are filled.
 
         Raises
         ------
@@ -84,30 +102,67 @@ class Outline:
         contour = tidy(as_contour(points))
         ring, origin, span = unit_frame(contour)
         ring, repairs = untangled(ring, origin, span)
+        inner: list[FloatArray] = []
+        if len(holes):
+            ring, inner, dropped = _cut_out(ring, [(as_contour(hole) - origin) / span for hole in holes])
+            repairs = (*repairs, *dropped)
         width, height = np.ptp(ring, axis=0) * span
-        return cls(_normalised(ring), name, (*notes, *repairs), (float(width), float(height)), unit)
+        normal, *inner = _normalised(ring, inner)
+        return cls(normal, name, (*notes, *repairs), (float(width), float(height)), unit, holes=tuple(inner))
+
+    @property
+    def rings(self) -> tuple[FloatArray, ...]:
+        """The outer ring, then the holes."""
+        return self.points, *self.holes
 
     @property
     def polygon(self) -> Polygon:
-        """The same shape as a shapely polygon."""
-        return Polygon(self.points)
+        """The same shape as a shapely polygon, with its holes."""
+        return Polygon(self.points, self.holes)
+
+    @property
+    def filled(self) -> Outline:
+        """The same outline without its holes: the silhouette that a whole sheet can show."""
+        return replace(self, holes=()) if self.holes else self
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Outline) and np.array_equal(self.points, other.points)
+        return (
+            isinstance(other, Outline)
+            and len(self.holes) == len(other.holes)
+            and all(map(np.array_equal, self.rings, other.rings))
+        )
 
     def __hash__(self) -> int:
-        return hash(self.points.tobytes())
+        return hash(tuple(ring.tobytes() for ring in self.rings))
 
     def __reduce__(self) -> tuple[type[Outline], tuple[Any, ...]]:
         # Through the constructor: numpy forgets the read-only flag when it unpickles.
-        return Outline, (self.points, self.name, self.notes, self.size, self.unit, self.place, self.nodes)
+        return Outline, (self.points, self.name, self.notes, self.size, self.unit, self.place, self.nodes, self.holes)
 
 
-def _normalised(ring: FloatArray) -> FloatArray:
-    """Orient counter-clockwise, centre and scale to area 1; the second pass removes the rounding of the first."""
+def _normalised(ring: FloatArray, holes: Sequence[FloatArray] = ()) -> list[FloatArray]:
+    """Orient the outer ring counter-clockwise and the holes clockwise, centre and scale the outer one to area 1."""
+    # The second pass removes the rounding of the first.
     for _ in range(2):
         area, centroid = area_and_centroid(ring)
-        ring = (ring - centroid) / np.sqrt(abs(area))
+        ring, *holes = [(each - centroid) / np.sqrt(abs(area)) for each in (ring, *holes)]
         if area < 0:
             ring = ring[::-1]
-    return ring
+    return [ring, *(hole[::-1] if area_and_centroid(hole)[0] > 0 else hole for hole in holes)]
+
+
+def _cut_out(ring: FloatArray, holes: Sequence[FloatArray]) -> tuple[FloatArray, list[FloatArray], tuple[str, ...]]:
+    """The ring with holes cut out of it, the holes that are left apart from it, and sentences on what was dropped."""
+    region = Polygon(ring)
+    missing = shapely.union_all([shapely.make_valid(Polygon(hole)) for hole in holes])
+    rest = max(shapely.get_parts(region.difference(missing)), key=lambda part: float(part.area), default=None)
+    if not isinstance(rest, Polygon) or rest.area < SMALLEST_AREA:
+        raise TargetError("contour.no_area", area=0.0, length=1.0)
+    least = SMALLEST_HOLE * Polygon(rest.exterior).area
+    kept = [hole for hole in rest.interiors if Polygon(hole).area >= least]
+    kept = sorted(kept, key=lambda hole: -Polygon(hole).area)[:MOST_HOLES]
+    filled = len(rest.interiors) - len(kept)
+    notes = (tr_n("{count} tiny hole was filled.", "{count} tiny holes were filled.", filled),) if filled else ()
+    # A ring that no hole opens stays as it is, vertex by vertex.
+    outer = ring if shapely.equals(Polygon(rest.exterior), region) else tidy(np.asarray(rest.exterior.coords))
+    return outer, [tidy(np.asarray(hole.coords)) for hole in kept], notes
