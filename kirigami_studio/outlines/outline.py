@@ -1,4 +1,4 @@
-"""The one value that all sources become: a closed, simple, centred silhouette of unit area, and the holes in it."""
+"""The target of every source: a closed, simple, centred silhouette of area 1 with its holes."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class Outline:
 
 
 def _normalised(ring: FloatArray, holes: Sequence[FloatArray] = ()) -> list[FloatArray]:
-    """Orient the outer ring counter-clockwise and the holes clockwise, centre and scale the outer one to area 1."""
+    """Orient the outer ring counter-clockwise, holes clockwise; centre and scale to area 1."""
     # The second pass removes the rounding of the first.
     for _ in range(2):
         area, centroid = area_and_centroid(ring)
@@ -152,7 +152,7 @@ def _normalised(ring: FloatArray, holes: Sequence[FloatArray] = ()) -> list[Floa
 
 
 def _cut_out(ring: FloatArray, holes: Sequence[FloatArray]) -> tuple[FloatArray, list[FloatArray], tuple[str, ...]]:
-    """The ring with holes cut out of it, the holes that are left apart from it, and sentences on what was dropped."""
+    """The ring less the holes at its rim, the holes within it, and notes on tiny ones."""
     region = Polygon(ring)
     missing = shapely.union_all([shapely.make_valid(Polygon(hole)) for hole in holes])
     rest = max(shapely.get_parts(region.difference(missing)), key=lambda part: float(part.area), default=None)
