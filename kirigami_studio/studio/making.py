@@ -664,6 +664,7 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
         markers=request.settings.markers,
         provenance=request.facts,
         width_mm=request.settings.width_mm,
+        thickness_mm=material_for(request.settings).thickness_mm,
         artwork=request.artwork,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )
