@@ -39,6 +39,8 @@ from kirigami_studio.foundation.errors import KirigamiError
 
 #: What sticks out counts so much more than what is missed: strips around hinges look worse than a short edge.
 STICKING_OUT = 1.5
+#: What lies farther off a target with holes than ``keep`` counts so much more: hooks that reach into a hole.
+FAR_OFF = 6.0
 #: Voids whose panels lie on the target by this share stay at first.
 MOSTLY = 0.5
 #: A change has to gain this (unit cells squared), and so often all voids along the boundary are looked at.
@@ -245,7 +247,10 @@ class _NotchCut:
             shape = kept_part(self._panels[k], self._common[k], self._corners[k], hinged, self._keep)
         if shape is not None:
             area, shared = float(shape.area), float(shape.intersection(self._common[k]).area)
-        return shared - STICKING_OUT * (area - shared), shape
+        far = 0.0
+        if self._open_inside and shape is not None:
+            far = float(shape.difference(shapely.buffer(self._targets[k], self._keep)).area)
+        return shared - STICKING_OUT * (area - shared) - FAR_OFF * far, shape
 
     def parts(self, voids: BoolArray) -> KeptPanels:
         """What stays of all panels with these voids.
