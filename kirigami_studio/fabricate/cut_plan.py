@@ -342,7 +342,8 @@ def _trimming(
         return lambda pulled: _plain_cuts(pulled, table, size, kerf, overcut)
     area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
     straight = STRAIGHT_MM if parts else UNTRIMMED_STRAIGHT_MM
-    return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight, lost)
+    sides = sheet_lines(deployment, width)[0]
+    return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight, lost, sides)
 
 
 def _plain_cuts(

@@ -34,6 +34,8 @@ STRAIGHT_MM = 5e-3
 UNTRIMMED_STRAIGHT_MM = 2e-4
 #: Cuts end this far (mm) inside the material where they leave it.
 INSIDE_MM = 8e-3
+#: Nearer than this (mm) the rim of a hole runs on the side of a panel.
+ON_SIDE_MM = 1e-3
 #: Gaps and spikes narrower than twice this (mm) are filled and removed whatever the kerf.
 HAIR_MM = 1e-2
 #: Corners of the material sharper than 2 asin(1 / MITRE) = 23 degrees get a blunt outline around them.
@@ -130,6 +132,7 @@ def trimmed_cuts(
     overcut_mm: float,
     straight_mm: float = STRAIGHT_MM,
     lost: Sequence[int] = (),
+    sides: FloatArray | None = None,
 ) -> tuple[Polygon, list[CutPiece]]:
     """Outline and remaining cuts of a trimmed sheet that fall into no crumbs.
 
@@ -145,12 +148,16 @@ def trimmed_cuts(
         As for :func:`outline_around`.
     lost : sequence of int
         Hinges that were given up, see :func:`lost_hinges`.
+    sides : (C, 2, 2) float, mm, optional
+        Sides of the panels along each cut, where cuts do not run on them.
 
     Raises
     ------
     FabricationError
         A hinge has lost the material that its connector needs.
     """
+    if sides is not None and area.interiors:
+        area = _up_to_cuts(area, sides, lines)
     for _ in range(CRUMB_ROUNDS):
         outline = outline_around(area, kerf_mm, straight_mm)
         pieces = remaining_cuts(lines, table, outline, kerf_mm, overcut_mm, lost)
@@ -160,6 +167,23 @@ def trimmed_cuts(
             break
         area = _largest(area.difference(shapely.union_all(shapely.buffer(crumbs, 0.5 * kerf_mm + INSIDE_MM))))
     return outline, pieces
+
+
+def _up_to_cuts(area: Polygon, sides: FloatArray, lines: FloatArray) -> Polygon:
+    """The area without the strips that cuts beside the sides (C, 2, 2) of its holes would leave along them."""
+    rims = shapely.multilinestrings(list(area.interiors))
+    near = shapely.buffer(shapely.linestrings(sides), ON_SIDE_MM, cap_style="flat")
+    strips = []
+    for cut in shapely.STRtree(near).query(rims, "intersects").tolist():
+        run = np.diff(sides[cut], axis=0)[0]
+        length = float(np.hypot(*run))
+        for part in shapely.get_parts(shapely.line_merge(shapely.intersection(rims, near[cut]))):
+            share = (shapely.get_coordinates(part) - sides[cut, 0]) @ run / length**2
+            if length * float(np.ptp(share)) > 4.0 * ON_SIDE_MM:
+                ends = np.array([share.min(), share.max()])
+                both = [line[0] + np.outer(ends, line[1] - line[0]) for line in (sides[cut], lines[cut])]
+                strips.append(Polygon([*both[0], *both[1][::-1]]).buffer(ON_SIDE_MM, join_style="mitre"))
+    return _largest(area.difference(shapely.union_all(strips))) if strips else area
 
 
 def outline_around(area: Polygon, kerf_mm: float, straight_mm: float = STRAIGHT_MM) -> Polygon:
