@@ -47,7 +47,7 @@ SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
 @dataclass(frozen=True, slots=True)
 class Trim:
-    """A trimmed design; two are equal when sheet, angle, pose and depth are, because the rest follows from them."""
+    """A trimmed design; two are equal when sheet, angle, pose, depth and match are: the rest follows from the target."""
 
     sheet: Sheet
     phi: float  #: radians; the angle at which the panels were cut
@@ -57,7 +57,7 @@ class Trim:
     #: tuple of (P, 2) float or None, unit cells; what stays of every panel, row by row, in the compact sheet's frame,
     #: counter-clockwise; None for a whole one, no points for one that was given up.
     kept: tuple[FloatArray | None, ...] = attribute(compare=False, repr=False)
-    iou: float = attribute(compare=False)  #: 0..1; exact IoU of the trimmed silhouette with the target
+    iou: float  #: 0..1; exact IoU of the trimmed silhouette with the target
     untrimmed_iou: float = attribute(compare=False)  #: 0..1; the same of the whole silhouette in the same pose
     removed_share: float = attribute(compare=False)  #: 0..1; removed part of the sheet's area
 
