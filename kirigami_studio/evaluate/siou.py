@@ -70,16 +70,18 @@ def _matches(shapes: Sequence[FloatArray], target: Outline, transforms: Sequence
     if not transforms:
         return []
     laid = np.stack([transform.apply(shape) for transform, shape in zip(transforms, shapes, strict=True)])
-    found = zip(aligned_sious(laid, target.points), exact_ious(laid, target), transforms, strict=True)
+    found = zip(aligned_sious(laid, target.points, target.holes), exact_ious(laid, target), transforms, strict=True)
     return [ShapeMatch(float(siou), float(exact), transform) for siou, exact, transform in found]
 
 
-def aligned_sious(laid: FloatArray, target: FloatArray) -> FloatArray:
-    """The sIoU of silhouettes (B, L, 2) that lie on the target (K, 2) as they should: (B,)."""
+def aligned_sious(laid: FloatArray, target: FloatArray, holes: Sequence[FloatArray] = ()) -> FloatArray:
+    """The sIoU of silhouettes (B, L, 2) that lie on the target (K, 2), less its holes, as they should: (B,)."""
     frame = RasterFrame.around(target)
     masks, (row, column) = filled_in_frame(as_plane(laid), frame)
     still = np.zeros(masks.shape[1:], dtype=np.bool_)
     still[row : row + frame.rows, column : column + frame.columns] = rasterise_in_frame(target, frame)
+    for hole in holes:
+        still[row : row + frame.rows, column : column + frame.columns] &= ~rasterise_in_frame(hole, frame)
     return raster_iou(masks, still)
 
 
