@@ -92,7 +92,8 @@ def turned(points: FloatArray, angle: float) -> FloatArray:
 
 @lru_cache(maxsize=64)
 def symmetry_of(target: Outline) -> TargetSymmetry:
-    """Measure a target's symmetry; the last few are remembered."""
+    """Measure the symmetry of a target with its holes filled; the last few are remembered."""
+    target = target.filled
     series = _ring_series(target.points)
     shared = np.fft.fft(_padded(np.einsum("j,jk->k", series.weight, series.terms**2).conj())).real / (2.0 * math.pi)
     overlap = shared / (2.0 - shared)
@@ -114,7 +115,7 @@ def symmetry_of(target: Outline) -> TargetSymmetry:
 
 def turn_overlap(target: Outline, angle: float) -> float:
     """IoU of a target and itself, turned about its centroid by an angle in radians."""
-    return _iou(target.polygon, turned(target.points, angle))
+    return _iou(target.filled.polygon, turned(target.points, angle))
 
 
 def different_axes(target: Outline, axes: Sequence[MirrorAxis], least: float = TOLERANCE) -> tuple[MirrorAxis, ...]:
