@@ -33,10 +33,10 @@ def _stored(name: str) -> tuple[LibraryEntry, Outline]:
     try:
         stored = json.loads(path.read_text(encoding="utf-8"))
         entry = LibraryEntry(stored["name"], stored["title"], stored["about"])
-        points = stored["points"]
+        points, holes = stored["points"], stored.get("holes", ())
     except (OSError, ValueError, KeyError, TypeError):
         raise TargetError("silhouette.damaged", path=path) from None
-    return entry, Outline.from_points(points, name=entry.name)
+    return entry, Outline.from_points(points, name=entry.name, holes=holes)
 
 
 def entry(name: str) -> LibraryEntry:

@@ -22,7 +22,7 @@ from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.merging import Join, Merging, merged, usual_outline
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import ALL, LARGEST, SourceParts, Strokes
-from kirigami_studio.outlines.pieces import largest_piece
+from kirigami_studio.outlines.pieces import largest_piece, rings_of
 from kirigami_studio.outlines.read import PART_READERS, PICTURES, has_parts, is_picture, read_parts, read_target
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.starts import StartShape, outline_start
@@ -88,8 +88,9 @@ def outline_of(source: object, choice: PartChoice | None = None, threshold: floa
     if isinstance(source, Polygon) and not source.is_empty and not source.is_valid:
         return Outline.from_points(source.exterior.coords)  # crossings are undone where it is clear what is meant
     if isinstance(source, BaseGeometry):
-        ring, notes = largest_piece(source)
-        return Outline.from_points(ring, notes=notes)
+        piece, notes = largest_piece(source)
+        ring, holes = rings_of(piece)
+        return Outline.from_points(ring, notes=notes, holes=holes)
     try:
         values = np.asarray(source)
     except (TypeError, ValueError):  # rows of unequal lengths

@@ -311,8 +311,8 @@ def text_tool(context: SketchContext) -> BoxTool:
 
     def shape(box: BoundingBox) -> Placed:
         text = context.text.strip()
-        ring, notes = lettered(letters(text, context.family, context.bold, context.italic), box)
-        return Placed.from_ring(ring, text or TEXT, notes)
+        word, notes = lettered(letters(text, context.family, context.bold, context.italic), box)
+        return Placed.from_polygon(word, text or TEXT, notes)
 
     hint = mark("Type the text above, then drag a box for it. Letters are moved together into one piece.")
     return BoxTool(context, TEXT, shape, hint)
