@@ -143,6 +143,10 @@ class Outline:
         """The same outline with the holes open that were filled."""
         return self._with(holes=(*self.holes, *self.filled_holes), filled_holes=()) if self.filled_holes else self
 
+    def with_holes(self, filled: bool | None) -> Outline:
+        """The same outline with all holes filled or open; as they are seen by themselves for None."""
+        return self if filled is None else self.filled if filled else self.opened
+
     def _with(self, holes: tuple[FloatArray, ...], filled_holes: tuple[FloatArray, ...]) -> Outline:
         """The same outline with other holes open, and the note on those that are filled."""
         before = _fill_note(self.filled_holes)

@@ -62,7 +62,12 @@ class TargetRead:
     picture: Picture | None = None
 
 
-def outline_of(source: object, choice: PartChoice | None = None, threshold: float | None = None) -> Outline:
+def outline_of(
+    source: object,
+    choice: PartChoice | None = None,
+    threshold: float | None = None,
+    fill_holes: bool | None = None,
+) -> Outline:
     """The outline of a library silhouette, a file, points, a mask or a Shapely geometry.
 
     Parameters
@@ -71,6 +76,8 @@ def outline_of(source: object, choice: PartChoice | None = None, threshold: floa
         Of the parts of a drawing.
     threshold : float, 0..1, optional
         Grey level of a picture.
+    fill_holes : bool, optional
+        Whether holes are filled; by default those around which only a line would stay.
 
     Raises
     ------
@@ -79,6 +86,11 @@ def outline_of(source: object, choice: PartChoice | None = None, threshold: floa
     UsageError
         Parts of what is no drawing.
     """
+    return _seen(source, choice, threshold).with_holes(fill_holes)
+
+
+def _seen(source: object, choice: PartChoice | None, threshold: float | None) -> Outline:
+    """The outline with the holes that are seen as such."""
     if isinstance(source, (str, os.PathLike)):
         return _read(source, choice, threshold)
     if choice is not None:

@@ -229,7 +229,7 @@ class PoseTool(SketchTool):
             paint_field(painter, self._field[0].pixel, self._field[1].pixel, palette)
         if self._proposal is not None:
             for index in self._proposal.chosen:
-                paint_proposal(painter, transform.to_pixels(self._proposal.objects[index].ring), palette)
+                paint_proposal(painter, transform.rings_to_pixels(self._proposal.objects[index].rings), palette)
             self._paint_reading(painter, transform, palette)
             return
         if not self.context.drawing.chosen:
