@@ -64,10 +64,8 @@ def combined(target: Placed | None, drawn: Placed, how: Combine, notes: Iterable
     if how is Combine.SUBTRACT and region.area < LEAST_LEFT * old.area:
         raise TargetError("combine.nothing_left")
     kept, left_out = largest_piece(region)
-    if kept.symmetric_difference(old).area <= WORTH_SAYING * old.area:
-        raise TargetError("combine.no_change")
     made = target.with_polygon(kept, (*notes, *left_out))
-    if made.outline == target.outline:
+    if made.polygon.symmetric_difference(old).area <= WORTH_SAYING * old.area:  # a tiny hole is none
         raise TargetError("combine.no_change")
     return made
 

@@ -191,6 +191,20 @@ class Drawing:
         """The drawing without the selected objects."""
         return self.without(self.chosen)
 
+    def with_holes(self, filled: bool) -> Drawing:
+        """The objects with their holes filled or open; one object where a hole lies between several."""
+        made = replace(self, objects=tuple(each.with_holes(filled) for each in self.objects))
+        target = made.united().target
+        done = not (target.outline.holes if filled else target.outline.filled_holes)
+        return made if done else Drawing((target.with_holes(filled),), frozenset({0}))
+
+    def without_hole_at(self, place: tuple[float, float]) -> Drawing | None:
+        """The drawing with the hole of the topmost object around a place, mm, filled; None without one."""
+        for k in range(len(self.objects) - 1, -1, -1):
+            if (made := self.objects[k].without_hole_at(place)) is not None:
+                return replace(self, objects=(*self.objects[:k], made, *self.objects[k + 1 :]))
+        return None
+
     def ordered(self, order: Order) -> Drawing:
         """The selected objects above or below others; they stay selected."""
         every, chosen = list(range(len(self.objects))), set(self.chosen)

@@ -75,6 +75,7 @@ class Merging:
     #: source units; width of lines that have none of their own; None for the usual share of the size.
     stroke: float | None = None
     tightness: float = USUAL_TIGHTNESS  #: 0..1
+    fill_holes: bool | None = None  #: whether holes are filled; None for those around which only a line would stay
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,8 +142,10 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
                     )
                 )
     alone = len(parts) == 1 < len(source.parts) and parts[0].is_named
-    breadth = STROKED_BREADTH if merging.as_painted else LEAST_BREADTH
-    outline, shape = _outline(source, region, notes, parts[0].name if alone else source.name, breadth)
+    breadth = _breadth(parts, merging.as_painted)
+    outline, shape = _outline(
+        source, region, notes, parts[0].name if alone else source.name, breadth, merging.fill_holes
+    )
     return Merged(outline, shape, bridges)
 
 
@@ -197,17 +200,27 @@ def usual_outline(source: SourceParts) -> Outline:
     if ring is not None and not any(part.lines for part in parts) and max(areas) > CLEARLY_MEANT * sum(areas):
         # Left as it is, so that crossings are judged and named.
         return _outline(source, ring, notes, source.name)[0]
-    # A letter of a light face is one none the less.
-    breadth = STROKED_BREADTH if choice.as_painted else 0.0 if all(part.is_letter for part in parts) else LEAST_BREADTH
-    return _outline(source, choice.region, notes, source.name, breadth)[0]
+    return _outline(source, choice.region, notes, source.name, _breadth(parts, choice.as_painted))[0]
+
+
+def _breadth(parts: Sequence[Part], as_painted: bool) -> float:
+    """How broad most of the shape of some parts is round holes, by :func:`has_seen_holes`."""
+    if as_painted:
+        return STROKED_BREADTH
+    return 0.0 if all(part.is_letter for part in parts) else LEAST_BREADTH  # a letter of a light face is one, too
 
 
 def _outline(
-    source: SourceParts, region: BaseGeometry | FloatArray, notes: Sequence[str], name: str, breadth: float = 0.0
+    source: SourceParts,
+    region: BaseGeometry | FloatArray,
+    notes: Sequence[str],
+    name: str,
+    breadth: float = 0.0,
+    fill_holes: bool | None = None,
 ) -> tuple[Outline, Polygon]:
     """The outline of a region or a ring, judged with y as in the source; and its polygon.
 
-    Holes are open where they are seen as such, by ``breadth``.
+    Unless it is said, holes are open where they are seen as such, by ``breadth``.
     """
     way = np.array([1.0, -1.0]) if source.is_turned else np.ones(2)
     dropped: tuple[str, ...] = ()
@@ -219,7 +232,7 @@ def _outline(
         turned = shapely.transform(region, lambda points: points * way)
         piece, dropped = largest_piece(turned)
         ring, holes = rings_of(piece)
-        are_seen = not holes or has_seen_holes(piece, turned, breadth)
+        are_seen = not holes or (has_seen_holes(piece, turned, breadth) if fill_holes is None else not fill_holes)
     found = Outline.from_points(
         thinned(ring), name=name, notes=(*notes, *dropped), unit=source.unit, holes=[thinned(hole) for hole in holes]
     )

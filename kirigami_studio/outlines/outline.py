@@ -147,6 +147,11 @@ class Outline:
         """The same outline with all holes filled or open; as they are seen by themselves for None."""
         return self if filled is None else self.filled if filled else self.opened
 
+    def without_hole(self, index: int) -> Outline:
+        """The same outline with one of its holes filled."""
+        rest = (*self.holes[:index], *self.holes[index + 1 :])
+        return self._with(holes=rest, filled_holes=(*self.filled_holes, self.holes[index]))
+
     def _with(self, holes: tuple[FloatArray, ...], filled_holes: tuple[FloatArray, ...]) -> Outline:
         """The same outline with other holes open, and the note on those that are filled."""
         before = _fill_note(self.filled_holes)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.foundation.arrays import FloatArray
@@ -147,9 +148,16 @@ class Placed:
         filled = map(self._on_board, self.outline.filled_holes)
         return Placed.from_ring(tidy(as_contour(ring)), self.outline.name, notes, holes, tuple(filled))
 
-    def with_outline(self, outline: Outline) -> Placed:
-        """The same place and size with another outline of the same outer ring, such as one whose holes are filled."""
-        return replace(self, outline=replace(outline, place=self.outline.place))
+    def with_holes(self, filled: bool) -> Placed:
+        """The same target with all holes filled or open."""
+        return replace(self, outline=self.outline.with_holes(filled))
+
+    def without_hole_at(self, place: tuple[float, float]) -> Placed | None:
+        """The same target with the hole around a place, mm, filled; None where there is none."""
+        for index, hole in enumerate(self.holes):
+            if shapely.contains_xy(Polygon(hole), *place):
+                return replace(self, outline=self.outline.without_hole(index))
+        return None
 
     def mapped(self, matrix: npt.ArrayLike, shift: npt.ArrayLike) -> Placed:
         """The same target with every point ``p`` (mm) at ``p @ matrix + shift``; its nodes and handles go along.

@@ -77,6 +77,11 @@ class PoseTool(SketchTool):
         elif index not in drawing.chosen:
             self.context.select({index})
 
+    def double_click(self, pointer: PointerEvent) -> None:
+        made = self.context.drawing.without_hole_at(pointer.free)
+        if made is not None:
+            self.context.changed.emit(Change(tr("Fill hole"), lambda: made))
+
     def _select_in_field(self, start: PointerEvent, end: PointerEvent) -> None:
         if distance(start.pixel, end.pixel) >= LEAST_DRAG:
             low, high = np.minimum(start.free, end.free), np.maximum(start.free, end.free)
