@@ -27,6 +27,11 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in resource("silhouettes").glob("*.json")))
 
 
+def solid_names() -> tuple[str, ...]:
+    """Names of those without holes."""
+    return tuple(name for name in names() if not _stored(name)[1].holes)
+
+
 @cache
 def _stored(name: str) -> tuple[LibraryEntry, Outline]:
     path = resource("silhouettes", f"{name}.json")
