@@ -41,6 +41,8 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
 KEEP = 0.15
+#: A hole of which less is open counts as closed.
+MOSTLY_OPEN = 0.5
 #: Between these depths hinges hold and panels can still be trimmed.
 SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
@@ -60,11 +62,18 @@ class Trim:
     iou: float  #: 0..1; exact IoU of the trimmed silhouette with the target
     untrimmed_iou: float = attribute(compare=False)  #: 0..1; the same of the whole silhouette in the same pose
     removed_share: float = attribute(compare=False)  #: 0..1; removed part of the sheet's area
+    #: 0..1 each; how much of each hole of the target is open.
+    holes_open: tuple[float, ...] = attribute(default=(), compare=False)
 
     @property
     def given_up(self) -> int:
         """Number of panels of which nothing stays."""
         return sum(part is not None and not len(part) for part in self.kept)
+
+    @property
+    def closed_holes(self) -> tuple[int, ...]:
+        """Numbers of the target's holes that stay closed for the most part."""
+        return tuple(number for number, share in enumerate(self.holes_open) if share < MOSTLY_OPEN)
 
 
 def trim(
@@ -118,6 +127,7 @@ def trim(
         iou=float(both / (place.area + silhouette.area - removed - cut.open_area - both)),
         untrimmed_iou=float(shared / (silhouette.area + place.area - shared)),
         removed_share=removed / deployment.area(math.pi),
+        holes_open=tuple(1.0 - covered for covered in cut.covered),
     )
 
 
@@ -132,6 +142,7 @@ class _Parts:
     kept: KeptPanels
     open_area: float = 0.0
     open_shared: float = 0.0
+    covered: tuple[float, ...] = ()  #: 0..1 each; how much of each hole of the target the parts and voids cover
 
 
 def _edge_parts(deployment: Deployment, place: Polygon, phi: float, keep: float) -> _Parts:
@@ -160,7 +171,20 @@ def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float)
         deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images, open_inside
     )
     left_out = ~stay
-    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()))
+    covered = tuple(
+        _covered(deployment, panels, phi, Polygon(hole), kept, voids[stay.ravel()]) for hole in place.interiors
+    )
+    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()), covered)
+
+
+def _covered(
+    deployment: Deployment, panels: PanelTable, phi: float, hole: Polygon, kept: KeptPanels, voids: GeometryArray
+) -> float:
+    """Share of a hole that kept panels and the voids between them cover."""
+    whole = polygons(deployment.compact[panels.corners])
+    parts = np.where([shape is None for shape in kept.shapes], whole, kept.shapes)
+    common = shapely.area(shapely.intersection(parts, _brought_back(deployment, panels, phi, hole)))
+    return float(common.sum() + shapely.area(shapely.intersection(voids, hole)).sum()) / hole.area
 
 
 def check_keep(keep: float) -> float:

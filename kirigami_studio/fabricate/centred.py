@@ -134,6 +134,8 @@ class StraightSheet:
     kerf_mm: float
     overcut_mm: float
     removed: tuple[int, ...]
+    #: Those of them that the user removed: what they faced stays beside its cut.
+    cut_open: tuple[int, ...]
     trimmed: Trimming  #: makes outline and cuts of the straight cuts
 
 
@@ -156,7 +158,7 @@ class _Room:
         self._least, self._widths = np.minimum(sheet.least, sheet.widths), sheet.widths.copy()
         self._attempt = np.zeros(sheet.table.hinge_count, dtype=np.intp)
         self._flat = np.zeros(sheet.table.hinge_count, dtype=np.bool_)
-        self._flat[_facing(sheet.table, sheet.removed)] = True
+        self._flat[_facing(sheet.table, sheet.cut_open)] = True
 
     @property
     def _spans(self) -> FloatArray:

@@ -249,7 +249,7 @@ def plan_cuts(
     if options.style is ConnectorStyle.CENTRED:
         least = least_widths(widths, material.min_ligament_mm, dict(left.hinge_mm))
         arranged = centred_cuts(
-            StraightSheet(lines, table, sides, widths, least, kerf, overcut, left.removed, trimming)
+            StraightSheet(lines, table, sides, widths, least, kerf, overcut, left.removed, options.removed, trimming)
         )
         if arranged is not None and parts and arranged.pieces(kerf) > 1 + len(options.removed):
             arranged = None
