@@ -521,7 +521,7 @@ class Design:
         rows, columns = self.grid
         figures = [f"IoU {self.iou:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
         details = "  ·  ".join(figures if self.feasible else [*figures, "not feasible"])
-        return states_picture(self.posed, self.target.points, f"{self.name}  ·  {self.target.name}", details)
+        return states_picture(self.posed, self.target.rings, f"{self.name}  ·  {self.target.name}", details)
 
 
 def score(ratios: SheetLike, target: TargetLike, *, phi: float = 0.0) -> Score:

@@ -20,12 +20,12 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import (
     GRID,
+    GeometryArray,
     KeptPanels,
     PanelTable,
     all_panels,
     edge_panels,
     kept_panels,
-    GeometryArray,
     polygons,
     with_pockets,
 )

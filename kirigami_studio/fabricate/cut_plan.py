@@ -17,7 +17,7 @@ from kirigami_studio.fabricate.centred import Arranged, StraightSheet, Trimming,
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
-from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
+from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
 from kirigami_studio.fabricate.endings import seats

@@ -139,7 +139,7 @@ class ShapeFigures:
     @classmethod
     def of(cls, target: Outline) -> ShapeFigures:
         """Measure a target."""
-        points = shapely.get_coordinates(target.polygon.simplify(COARSENESS))[:-1]
+        points = shapely.get_coordinates(shapely.Polygon(target.points).simplify(COARSENESS))[:-1]
         after = np.roll(points, -1, axis=0) - points
         before = np.roll(after, 1, axis=0)
         turns = np.arctan2(
