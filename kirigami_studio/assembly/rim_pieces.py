@@ -23,6 +23,8 @@ from kirigami_studio.lattice.deployment import Deployment
 
 #: Parts smaller than this, mm2, are neither cut off nor added.
 LEAST_PART = 0.5
+#: Pieces that would fall apart along an outline are cut so far outside of it, mm.
+BEYOND = (1.0, 2.0, 4.0, 8.0)
 #: Nicks at the rim that are narrower than twice this, mm, are filled.
 NICK = 2.5
 #: What is nearer than this, mm, touches.
@@ -127,7 +129,8 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
         one = shaping.held_together(index, wanted)
         if one is None:
             strips = shapely.LineString(as_points(motion.corners[index][motion.hinged[index]])).buffer(keep)
-            one = shaping.held_together(index, united(wanted, shared(body, strips)))
+            more = [strips, walls.convex_hull, *(mine.buffer(beyond) for beyond in BEYOND)]
+            one = next(filter(None, (shaping.held_together(index, united(wanted, shared(body, m))) for m in more)), None)
         if one is None:
             continue
         price = shared(less(body, one), panels[index]).area

@@ -500,7 +500,7 @@ def _areas(shape: BaseGeometry) -> BaseGeometry:
     if shape.geom_type in ("Polygon", "MultiPolygon"):
         return shape
     parts = shapely.get_parts(shape)
-    return shapely.union_all(parts[shapely.get_dimensions(parts) == 2])
+    return _overlay(shapely.union_all, parts[shapely.get_dimensions(parts) == 2])
 
 
 def _tidy(part: Polygon, least_hole: float) -> Polygon:
