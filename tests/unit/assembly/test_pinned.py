@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,10 +16,12 @@ from kirigami_studio.assembly.motion import LayerMotion
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Piece, RoundHole
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
+from kirigami_studio.assembly.shaping import less
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.outline import Outline
 from tests.unit.assembly.pinned_designs import bodies_at, overlap_at, pinwheel
 
+DATA = Path(__file__).resolve().parents[2] / "data"
 WIDTH_MM = 150.0
 #: Of designs of 3 x 3 voids.
 SMALL_MM = 120.0
@@ -238,3 +242,10 @@ def test_that_pins_without_a_wall_are_left_out_and_the_pieces_are_sound_then(mon
     assert report.problems == () and report.figures.wall_mm > options.asked_wall_mm - 0.02
     monkeypatch.setattr(LayerMotion, "without", lambda motion, nodes: motion)
     assert [one.code for one in check_pinned(pinned(*design, 130.0, options), 5).problems] == ["pinned.neck_too_narrow"]
+
+
+def test_that_gaps_are_known_where_floating_point_gets_what_is_left_of_them_wrong() -> None:
+    known = json.loads((DATA / "making" / "gaps_less_extension.json").read_text())
+    gaps, extension = (shapely.from_wkb(known[name]) for name in ("gaps", "extension"))
+    left = less(gaps, extension)
+    assert left.is_valid and left.area == pytest.approx(gaps.area - gaps.intersection(extension).area, abs=1e-3)
