@@ -27,6 +27,8 @@ from kirigami_studio.lattice.deployment import Deployment
 LEAST_PART = 0.5
 #: Pieces that may not lose all that is outside of an outline are cut so far outside of it, mm.
 BEYOND_MM = (1.0, 2.0, 4.0, 8.0, 16.0)
+#: Share of a piece that stays where it is cut along an outline: less would be necks alone.
+LEAST_KEPT = 0.3
 #: Middles of necks between pins outside of an outline keep so much of half a neck to the edge; the necks are so much
 #: wider than asked for; and ways inside of the outline cost this share.
 CLEAR_OF_EDGE, WIDER, INSIDE = 0.98, 1.05, 0.05
@@ -157,7 +159,7 @@ def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry)
         pins = as_points(motion.corners[index][motion.hinged[index]])
         links = shortest_links(body, pins, mine, 0.5 * float(shaping.neck_mm[index]))
         whole = shaping.held_together(index, united(wanted, shared(body, links)))
-    if whole is not None:
+    if whole is not None and whole.area >= LEAST_KEPT * body.area:
         yield whole
     for beyond in BEYOND_MM:
         whole = shaping.held_together(index, united(wanted, shared(body, mine.buffer(beyond))))
