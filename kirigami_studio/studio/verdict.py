@@ -388,13 +388,14 @@ class CloseLook:
     refusal: Note | None
     #: How it does as cut; None where nobody had to look so far, or where that cannot be told
     as_cut: AsCut | None = None
+    gained: float = 0.0  #: Match (IoU) that pieces on pins have beyond their sheet
 
     @property
     def loss(self) -> float:
         """Worth (IoU) lost by being cut: match, and for the stretch of its connectors."""
         if self.as_cut is None:
             return 0.0
-        return (self.as_cut.lost or 0.0) + STRETCH * self.as_cut.stretch
+        return (self.as_cut.lost or 0.0) + STRETCH * self.as_cut.stretch - self.gained
 
 
 def look_at(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> CloseLook:
@@ -445,7 +446,8 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made, settings)
-    return CloseLook(None if found.ok else found.problems[0], made.as_cut)
+    gained = made.report.figures.match - candidate.score.iou_exact
+    return CloseLook(None if found.ok else found.problems[0], made.as_cut, gained)
 
 
 def refused(error: KirigamiError) -> Verdict:
