@@ -172,7 +172,11 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
         for index in np.argsort(-worth)[: np.count_nonzero(worth)].tolist():
             near = gap[piece == index]
             beside = near[rims[near]]
-            at_rim = shared(_together(gaps[beside]), placed[index].buffer(reach, quad_segs=ZONE_CHORDS)) if len(beside) else Polygon()
+            at_rim = (
+                shared(_together(gaps[beside]), placed[index].buffer(reach, quad_segs=ZONE_CHORDS))
+                if len(beside)
+                else Polygon()
+            )
             if by_shares:
                 inside = _together(gaps[near[~rims[near]]])
                 needed = united(inside, shared(at_rim, state.shares[index]))
@@ -227,7 +231,7 @@ def _extended(
         best, added = more
         beyond = 0.0 if within else less(added, limit).area
         if (beyond <= LEAST_PART or beyond <= spare) and (
-            added is room or best.area > body.area + LEAST_PART and shared(added, missed).area > LEAST_PART
+            added is room or (best.area > body.area + LEAST_PART and shared(added, missed).area > LEAST_PART)
         ):
             shaping.add(index, best, added)
             return motion.placed(np.array([added], dtype=object), here, state.turn)[0], beyond

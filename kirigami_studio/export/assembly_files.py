@@ -33,7 +33,7 @@ from kirigami_studio.export.cut_bed import CutBed, board_bed, laid_on_beds
 from kirigami_studio.export.drive_files import drive_lines
 from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.file_content import FileContent
-from kirigami_studio.export.hold_files import hold_findings, hold_lines, holds_json
+from kirigami_studio.export.hold_files import SIDE_BY_SIDE_STEPS, hold_findings, hold_lines, holds_json
 from kirigami_studio.export.layer_files import by_layer, fill_layer_folder, laid_together, layer_paths, whole_folder
 from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
@@ -288,7 +288,14 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
     sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
     if (glued := job.glued) is not None:
         template = board_bed(glued.board, 0.0)
-        sheet = replace(sheet, steps=glued.steps, legend={2: "tiles"}, template=template, under=glued.under)
+        sheet = replace(
+            sheet,
+            steps=glued.steps,
+            legend={2: mark("tiles")},
+            hold_steps=SIDE_BY_SIDE_STEPS,
+            template=template,
+            under=glued.under,
+        )
     write_assembly_pdf(sheet, fresh / SHEET, job.paper)
     for one in verified:
         for finding in one.findings:

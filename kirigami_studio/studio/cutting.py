@@ -99,7 +99,7 @@ def plan_sheet(
     told += [
         Note.of(code)
         for code, wanted in (
-            ("hold.only_on_pins", settings.held_by is not HoldKind.NONE),
+            ("hold.only_on_pins", settings.held_by is not HoldKind.NONE and tiles is None),
             ("drive.only_on_pins", settings.moved_by is not DriveKind.NONE),
         )
         if wanted

@@ -295,7 +295,7 @@ class MadePieces:
 
         cut = self.cutting
         if cut is None:
-            return PosedPieces.of(self.made.plan, self.job.material)
+            return PosedPieces.of(self.made.plan, self.job.material, holds=self.made.held.places)
         return PosedPieces.of(self.made.plan, cut.material, cut.fastener, self.made.held.places)
 
     @property
@@ -390,6 +390,8 @@ def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> Print
         paper=settings.paper,
         target=shown,
         provenance=request.facts,
+        hold=hold_options(settings),
+        holds=made.held.places,
     )
 
 
@@ -582,10 +584,11 @@ def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:
     from kirigami_studio.project.store import packed_design
 
     settings, sheet, target = request.settings, backing.sheet, None
+    hold = hold_options(board_layer(settings))
     if request.target is not None:
         target = request.candidate.final_pose.inverse().apply(request.target.points) * sheet.cell_mm
     return AssemblyJob(
-        sheet.assembly,
+        backing.assembly,
         backing.material,
         backing.machine,
         settings.fastener,
@@ -600,9 +603,11 @@ def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:
         paper=settings.paper,
         order=settings.options.order,
         target=target,
+        hold=hold,
+        holds=backing.held.places,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
-        glued=Glued(sheet, backing.board, backing.material, backing.jig.cut),
+        glued=Glued(sheet, backing.board, backing.material, backing.jig.cut, backing.held.places),
     )
 
 

@@ -22,6 +22,7 @@ from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.fabricate.cut_panels import cut_panels
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.hold import HoldKind, HoldWhen
 from kirigami_studio.fabricate.options import BoardCut
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
@@ -216,3 +217,32 @@ def test_that_tiles_without_room_are_refused_and_nothing_is_written(
     assert main(["export", str(project), "--out", str(tmp_path / "none.dxf"), "--gap-mm", "0"]) == 1
     assert "0.2 mm" in capsys.readouterr().err
     assert not (tmp_path / "none").exists()
+
+
+@pytest.mark.parametrize(("kind", "through"), [(HoldKind.MAGNETS, 0), (HoldKind.STITCHES, 4), (HoldKind.TABS, 0)])
+def test_that_tiles_are_held_where_they_meet_and_thread_goes_through_both_layers(
+    square: Document, tmp_path: Path, kind: HoldKind, through: int
+) -> None:
+    settings = replace(square.fabrication, held_by=kind, held_when=HoldWhen.BOTH, magnet_mm=4.0)
+    *_, found = exporting(CutRequest.of(square, settings), Output(tmp_path / "held", "cut"), True, never)
+    record = json.loads((tmp_path / "held" / "pieces.json").read_text())
+    holds = record["holds"]
+    assert {hold["state"] for hold in holds} == {"open", "flat"} and not any(hold["through"] for hold in holds)
+    text = (tmp_path / "held" / "layer-1.svg").read_text()
+    assert ("HOLES_THROUGH" in text) == bool(through)
+    assert not through or f"HOLES_THROUGH {through * len(holds)}" in text
+    assert main(["check", str(tmp_path / "held" / "layer-1.dxf")]) == 0
+    assert found.ok and "hold.only_on_pins" not in {note.code for note in found.planned.plan.notes}
+    if through:  # thread holes of both layers are in one place
+        layers = [read_with_ezdxf(tmp_path / "held" / f"layer-{layer}.dxf").strokes for layer in (1, 2)]
+        rounds = [
+            sorted(
+                tuple(np.round(stroke.points.mean(axis=0), 3))
+                for stroke in strokes
+                if stroke.bulges is not None and np.ptp(stroke.points[:, 0]) < 2.0
+            )
+            for strokes in layers
+        ]
+        assert len(rounds[0]) == len(rounds[1]) == through * len(holds)
+        shift = np.subtract(rounds[0], rounds[1])
+        assert np.ptp(shift, axis=0).max() < 2e-3
