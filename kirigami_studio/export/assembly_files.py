@@ -371,11 +371,16 @@ def read_bed(job: AssemblyJob, bed: CutBed, path: Path, known: KnownOutlines) ->
     ExportError
         Missing, damaged, or of another kind.
     """
+    return _bed_verified(job, bed, path, [_content(read, path) for read in _format_of(path).readers], known, [])
+
+
+def _format_of(path: Path) -> Format:
+    """The format of a cut file, or of a folder of layer files."""
     kind = path.suffix.lower()
     how = FORMATS[".dxf"] if path.is_dir() else PROJECT if kind == ".lbrn2" else FORMATS.get(kind)
     if how is None:
         raise ExportError("verify.unknown_kind", path=path, known=", ".join(KINDS))
-    return _bed_verified(job, bed, path, [_content(read, path) for read in how.readers], known, [])
+    return how
 
 
 def _bed_verified(
@@ -444,11 +449,41 @@ def _hinge_layer_written(job: AssemblyJob, glued: Glued, fresh: Path, home: Path
     facts |= {VERDICT: job.verdict} if job.verdict else {}
     cut = glued.plan.material, glued.plan.machine
     path, contents, found = _strokes_written(job, HINGE_LAYER, kind, strokes, profile, facts, job.record, cut, fresh)
+    return _hinge_layer_verified(glued, home / path.name, contents, found, profile)
+
+
+def read_hinge_layer(job: AssemblyJob, glued: Glued, path: Path) -> Verification:
+    """Judge the hinge layer in a file of any origin, by both readers.
+
+    Parameters
+    ----------
+    job : AssemblyJob
+        With the profile of the file.
+    glued : Glued
+    path : Path
+        A file, or a folder of layer files.
+
+    Raises
+    ------
+    ExportError
+        Missing, damaged, or of another kind.
+    """
+    how, profile = _format_of(path), find_profile(job.profile)
+    if path.suffix.lower() == ".lbrn2":
+        profile = replace(find_profile(PROJECT_PROFILE), flatten=True)
+    contents = [_content(read, path) for read in how.readers]
+    return _hinge_layer_verified(glued, path, contents, [], profile)
+
+
+def _hinge_layer_verified(
+    glued: Glued, path: Path, contents: Sequence[FileContent], found: Sequence[Finding], profile: Profile
+) -> Verification:
+    """The hinge layer in a file, with what else was found there."""
     sheets = [glued.sheet_in(content.strokes, profile) for content in contents]
-    found += agreed(contents, [sheet_findings(sheet, glued.plan, profile) for sheet in sheets])
+    found = [*found, *agreed(contents, [sheet_findings(sheet, glued.plan, profile) for sheet in sheets])]
     work = glued.work(profile)
     return Verification(
-        path=home / path.name,
+        path=path,
         ok=all(finding.ok for finding in found),
         size_mm=extent(contents[-1].strokes),
         pieces=1,

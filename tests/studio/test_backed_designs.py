@@ -34,6 +34,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.as_cut import Source, estimate
+from kirigami_studio.studio.checking import checked_together
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
@@ -246,3 +247,20 @@ def test_that_tiles_are_held_where_they_meet_and_thread_goes_through_both_layers
         assert len(rounds[0]) == len(rounds[1]) == through * len(holds)
         shift = np.subtract(rounds[0], rounds[1])
         assert np.ptp(shift, axis=0).max() < 2e-3
+
+
+def test_that_a_check_with_its_design_judges_both_layers_together(
+    square: Document, made: Planned, written: Path
+) -> None:
+    paths = [written / f"layer-{layer}.dxf" for layer in (1, 2)]
+    expected = judged(CutRequest.of(square), made, closed(CutRequest.of(square), made))
+    both = checked_together(paths, square)
+    assert [one.verdict.level for one in both if one.verdict] == [expected.level] * 2
+    assert all(one.sound and one.verification is not None and one.verification.ok for one in both)
+    assert "check.beds_missing" not in {note.code for one in both if one.verdict for note in one.verdict.notes}
+    alone = checked_together(paths[:1], square)[0]
+    assert alone.verdict is not None and "check.beds_missing" in {note.code for note in alone.verdict.notes}
+    other = replace(square, candidates=(replace(square.candidates[0], sheet=Sheet(RatioField(np.full((3, 3), 1.2)))),))
+    assert {one.code for one in checked_together(paths, other)[0].verdict.problems} >= {"check.other_design"}
+    wider = replace(square, fabrication=replace(square.fabrication, gap_mm=2.0))
+    assert not checked_together(paths, wider)[1].verification.ok
