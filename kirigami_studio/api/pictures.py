@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from kirigami_studio.assembly.posed_pieces import PosedPieces
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.picture import PANEL, PANEL_EDGE, TARGET_EDGE, hexadecimal
 from kirigami_studio.export.svg import NAMESPACE, decimals, path_data
@@ -120,11 +121,17 @@ def target_picture(points: FloatArray, name: str) -> str:
     return canvas.svg
 
 
-def states_picture(design: PosedDesign, target: FloatArray | None, heading: str, details: str = "") -> str:
-    """A sheet flat, half open and at its angle, over its target (L, 2), in one scale."""
+def states_picture(
+    design: PosedDesign,
+    target: FloatArray | None,
+    heading: str,
+    details: str = "",
+    pieces: PosedPieces | None = None,
+) -> str:
+    """A sheet flat, half open and at its angle, over its target (L, 2), in one scale; made of pieces if it is."""
     end = design.phi_target
     angles = (math.pi, 0.5 * (math.pi + end), end)
-    parts = [design.parts(phi) for phi in angles]
+    parts = [design.parts(phi) if pieces is None else pieces.outlines(phi) for phi in angles]
     clouds = [np.concatenate(rings) for rings in parts]
     if target is not None:
         clouds[-1] = np.concatenate([clouds[-1], target])
@@ -140,7 +147,10 @@ def states_picture(design: PosedDesign, target: FloatArray | None, heading: str,
     for number, (phi, rings, cloud, width) in enumerate(zip(angles, parts, clouds, widths.tolist(), strict=True)):
         placing = Placing.of(cloud, scale, (left + width / 2, MARGIN + GAP + height / 2))
         over = target is not None and number == 2
-        _sheet(canvas, placing, rings, target if over else None)
+        if pieces is None:
+            _sheet(canvas, placing, rings, target if over else None)
+        else:
+            _pieces(canvas, placing, pieces, rings, target if over else None)
         words = "flat" if number == 0 else f"{math.degrees(phi):.0f}°"
         canvas.text(left + width / 2, height + MARGIN + GAP + 16, words, "middle")
         left += width + GAP
@@ -282,6 +292,18 @@ def _sheet(canvas: SvgPicture, placing: Placing, rings: Sequence[FloatArray], ta
     # A twentieth of a panel: fine grids stay blue.
     line = min(max(0.05 * math.sqrt(float(extent.prod()) / len(drawn)), 0.3), 0.9)
     canvas.rings(drawn, fill=PANEL_FILL, stroke=PANEL_LINE, stroke_width=f"{line:.2f}")
+    if target is not None:
+        _target(canvas, placing(target), 1.6)
+
+
+def _pieces(
+    canvas: SvgPicture, placing: Placing, pieces: PosedPieces, rings: Sequence[FloatArray], target: FloatArray | None
+) -> None:
+    """Pieces layer by layer, and the outline of their target on top."""
+    for place, layer in enumerate(pieces.layers):
+        face = hexadecimal(pieces.look.layer(place, len(pieces.layers)))
+        drawn = [placing(rings[number]) for number in layer]
+        canvas.rings(drawn, fill=face, stroke=hexadecimal(pieces.look.line), stroke_width="0.4")
     if target is not None:
         _target(canvas, placing(target), 1.6)
 

@@ -29,7 +29,7 @@ from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
 from kirigami_studio.export.backed_files import HINGE_LAYER, Glued
-from kirigami_studio.export.cut_bed import CutBed, board_bed, laid_on_beds
+from kirigami_studio.export.cut_bed import BOARD, LAYERS, CutBed, board_bed, laid_on_beds
 from kirigami_studio.export.drive_files import drive_lines
 from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.file_content import FileContent
@@ -73,9 +73,11 @@ LENGTH_DECIMALS, TURN_DECIMALS = 6, 9
 RING_CHORD_MM = 5e-4
 #: Kinds of cut files that are written.
 KINDS = (".dxf", ".svg", ".lbrn2")
+#: Kinds of files with the solids of a drive, and distance of its beds in them (mm).
+SOLIDS, APART_MM = (".3mf", ".stl"), 10.0
 PIECES, PARTS, SHEET = "pieces.json", "parts.csv", "assembly.pdf"
 OWN_NAME = re.compile(
-    r"(layer-[1-9]\d*|board)(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf"
+    r"(layer-[1-9]\d*|board)(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2|\.stl|\.3mf)?|pieces\.json|parts\.csv|assembly\.pdf"
 )
 #: LightBurn projects have its own colours, and four decimals.
 PROJECT_PROFILE, PROJECT = "lightburn", Format((read_project, scan_project), 1e-4, 1e-6)
@@ -297,6 +299,8 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
             under=glued.under,
         )
     write_assembly_pdf(sheet, fresh / SHEET, job.paper)
+    if job.drive is not None and set(kinds) >= set(KINDS[:2]):
+        _write_solids(job, fresh)
     for one in verified:
         for finding in one.findings:
             if not finding.ok:
@@ -497,6 +501,24 @@ def _hinge_layer_verified(
 
 def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
     return laid_together([read(part) for part in layer_paths(path)], path) if path.is_dir() else read(path)
+
+
+def _write_solids(job: AssemblyJob, fresh: Path) -> None:
+    """Write board, arms and handle, as they lie on their beds side by side, as thick as the sheet: to be printed."""
+    from kirigami_studio.assembly.printed import extruded
+    from kirigami_studio.assembly.solids import at_origin
+    from kirigami_studio.export.meshes import write_plate  # with libraries that few need
+
+    thick, solids, left = job.material.thickness_mm, [], 0.0
+    for bed in (one for one in job.beds if one.layer > LAYERS):
+        for cuts, place in bed.placed:
+            piece = cuts.piece
+            holes = [_ring(hole) for hole in piece.holes]
+            rings = [place.put(ring) + np.array([left, 0.0]) for ring in (piece.outline, *piece.openings, *holes)]
+            solids.append(extruded(piece.id, 1 + piece.layer % 2, Polygon(rings[0], rings[1:]), thick))
+        left += bed.size_mm[0] + APART_MM
+    for kind in SOLIDS:
+        write_plate(at_origin(solids), fresh / f"{BOARD}{kind}", _about(job)["subject"])
 
 
 # pieces and motion ----------------------------------------------------------------------------------------------------

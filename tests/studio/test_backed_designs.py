@@ -15,6 +15,7 @@ from shapely.geometry import Polygon
 
 import kirigami_studio as ks
 from kirigami_studio.__main__ import main
+from kirigami_studio.api.design import Design
 from kirigami_studio.assembly.checks import body_of, placed_bodies
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
@@ -42,6 +43,7 @@ from kirigami_studio.studio.making import (
     closed,
     exporting,
     judged,
+    picturing,
     planned,
     planning,
     timing,
@@ -264,3 +266,16 @@ def test_that_a_check_with_its_design_judges_both_layers_together(
     assert {one.code for one in checked_together(paths, other)[0].verdict.problems} >= {"check.other_design"}
     wider = replace(square, fabrication=replace(square.fabrication, gap_mm=2.0))
     assert not checked_together(paths, wider)[1].verification.ok
+
+
+def test_that_small_pictures_show_tiles_on_cloth(square: Document, made: Planned) -> None:
+    ((_, pieces),) = picturing((CutRequest.of(square),), never)
+    assert pieces is not None and len(pieces.layers) == 2 and made.layers is not None
+    cloth, tiles = pieces.layers
+    assert len(cloth) == 16 and len(tiles) == len(made.layers.assembly.pieces)
+    assert pieces.look.layer(0, 2) != pieces.look.layer(1, 2)
+    rings = pieces.outlines(0.0)
+    under = shapely.union_all([Polygon(rings[number]).buffer(1e-6) for number in cloth])
+    assert all(under.covers(Polygon(rings[number])) for number in tiles)
+    design = Design(square)
+    assert design._repr_svg_().count("<path") > 3 and "#e2dbcc" in design._repr_svg_()
