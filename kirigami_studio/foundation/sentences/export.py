@@ -34,6 +34,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "profile.name_left_out": mark(
         "The name {name!r} is not in this file: with this machine profile, everything in a file is cut."
     ),
+    "profile.marks_left_out": mark(
+        "The marks of places that hold the sheet are not in this file: with this machine profile, everything in a file "
+        "is cut."
+    ),
     "profile.kerf_is_theirs": mark(
         "Contours are the edges of the finished part: the cutting service has to allow for its kerf."
     ),
