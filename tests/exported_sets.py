@@ -88,10 +88,8 @@ def exported(project: Document, folder: Path) -> ExportedFiles:
     return written(request, made, Output(folder, "cut", True), closed(request, made))
 
 
-def contradictions(number: int, folder: Path) -> tuple[int, list[str]]:
-    """Cut files of a random export, and sentences on checks that do not agree with its verdict."""
-    project = project_of(number)
-    found = exported(project, folder)
+def contradictions(project: Document, found: ExportedFiles) -> tuple[int, list[str]]:
+    """Cut files of the export of a project, and sentences on checks that do not agree with its verdict."""
     verdict = found.verdict
     assert verdict is not None
     cut: dict[str, list[Path]] = {}
@@ -140,10 +138,14 @@ def main() -> int:
     total, wrong, begun = 0, 0, time.process_time()
     for number in range(arguments.first, arguments.first + arguments.designs):
         with tempfile.TemporaryDirectory() as folder:
-            files, told = contradictions(number, Path(folder) / "set")
+            project = project_of(number)
+            files, told = contradictions(project, exported(project, Path(folder) / "set"))
         total, wrong = total + files, wrong + len(told)
-        print(f"{number}: {MADE_AS[number % len(MADE_AS)].value}, {files} cut files", *told, sep="\n  ", flush=True)
-    print(f"{total} cut files, {wrong} contradictions, {time.process_time() - begun:.0f} s of processor")
+        lines = (f"{number}: {MADE_AS[number % len(MADE_AS)].value}, {files} cut files", *told)
+        sys.stdout.write("\n  ".join(lines) + "\n")
+        sys.stdout.flush()
+    spent = time.process_time() - begun
+    sys.stdout.write(f"{total} cut files, {wrong} contradictions, {spent:.0f} s of processor\n")
     return 1 if wrong else 0
 
 

@@ -4,8 +4,8 @@ Panels are what erosion by half a connector leaves apart, connectors the necks b
 point of its narrowest section: the middle, or, beside a straight flank, 0.73 (sharp slit) to 0.56 widths (kerf of four
 widths) from it.  Panels keep their shape but for what bends around the necks.  The sheet is closed by Gauss-Newton on
 the gaps at all necks, with its mean turn prescribed; panels that are in each other push each other out.  It jams where
-a neck is stretched by more than it bears, or where panels stay in each other by more than two necks in a row bear.  A panel narrower than a connector is read as two, and
-sheets with tabs, whose outline is cut in parts, are not read.
+a neck is stretched by more than it bears, or where panels stay in each other by more than two necks in a row bear.  A
+panel narrower than a connector is read as two, and sheets with tabs, whose outline is cut in parts, are not read.
 """
 
 from __future__ import annotations
@@ -488,7 +488,7 @@ def _passed(phi_deg: FloatArray, share: FloatArray, least: float) -> float:
 
 
 def _pushed(model: _Model, state: FloatArray, mean: float, touches: list[Touch]) -> tuple[FloatArray, list[Touch]]:
-    """The state of least energy at a mean turn (radians), with panels pushed out of each other, and where they touch."""
+    """The state of least energy at a mean turn (radians), panels pushed out of each other, and where they touch."""
     for _ in range(MOST_LOOKS):
         state = _settled(model, state, mean, touches)
         known = {(one.inner, one.outer): one for one in touches}
