@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from itertools import product
 from pathlib import Path
@@ -234,10 +234,9 @@ def usual_making(material: Material, k: int) -> Making:
     return Making(material.construction, material.sheet_mm, k)
 
 
-def makings(material: Material, k: int) -> Iterator[Making]:
-    """Ways of making sheets of a material, the usual one first, then those that are tried where it is not ready."""
+def other_makings(material: Material, k: int) -> Iterator[Making]:
+    """Ways of making sheets of a material that are tried where the usual one is not ready."""
     usual = usual_making(material, k)
-    yield usual
     room = OF_BED * min(machine_of(material).reach_mm)
     if MachineKind.of(material.machine) is not MachineKind.PRINTER:
         width = min(max(material.sheet_mm, BOARD_MM), room)
@@ -276,7 +275,7 @@ def measure_presets(
     into : str, optional
         Markdown file whose table is written anew, between :data:`BEGIN` and :data:`END`.
     report : callable
-        Gets the sheets done and their number.
+        Gets the usual sheets done and their number.
 
     Raises
     ------
@@ -291,19 +290,18 @@ def measure_presets(
     keys = list(materials) or list(known)
     if into is not None:
         _parts_around(Path(into))
+    asked = list(product(keys, list(shapes) or SHAPES))
     usual: list[PresetSheet] = []
     others: list[PresetSheet] = []
-    wanted = list(shapes) or SHAPES
     with RunStore.opened({"suite": "presets"}, None if runs is None else Path(runs)) as store:
-        for key, shape in product(keys, wanted):
-            ways = [PresetRun(known[key], shape, making, seed) for making in makings(known[key], k)]
-            usual.append(_kept(ways[0], store))
-            if not usual[-1].ready and shape in NEEDED:
-                for way in ways[1:]:
-                    others.append(_kept(way, store))
-                    if others[-1].ready:
-                        break
-            report(len(usual), len(keys) * len(wanted))
+        for key, shape in asked:
+            usual.append(_kept(PresetRun(known[key], shape, usual_making(known[key], k), seed), store))
+            report(len(usual), len(asked))
+        for sheet in usual:
+            if not sheet.ready and sheet.shape in NEEDED:
+                material = known[sheet.material]
+                ways = (PresetRun(material, sheet.shape, making, seed) for making in other_makings(material, k))
+                others += _until_ready(ways, store)
     said = {key: note_before_run(new_settings({"material": key})) for key in keys}
     notes = {key: note.text for key, note in said.items() if note is not None}
     figures = PresetFigures(tuple(usual), notes, tuple(others))
@@ -330,6 +328,14 @@ def _parts_around(path: Path) -> tuple[str, str]:
     if not begin or not end:
         raise ExportError("file.not_written", path=path, reason=f"it has no lines {BEGIN} and {END}")
     return before, after
+
+
+def _until_ready(ways: Iterable[PresetRun], store: RunStore) -> Iterator[PresetSheet]:
+    for way in ways:
+        sheet = _kept(way, store)
+        yield sheet
+        if sheet.ready:
+            return
 
 
 def _kept(run: PresetRun, store: RunStore) -> PresetSheet:
