@@ -22,6 +22,7 @@ from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.fabricate.cut_panels import cut_panels
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.options import BoardCut
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
@@ -33,6 +34,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.as_cut import Source, estimate
+from kirigami_studio.studio.cutting import least_feature_mm
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
@@ -216,3 +218,13 @@ def test_that_tiles_without_room_are_refused_and_nothing_is_written(
     assert main(["export", str(project), "--out", str(tmp_path / "none.dxf"), "--gap-mm", "0"]) == 1
     assert "0.2 mm" in capsys.readouterr().err
     assert not (tmp_path / "none").exists()
+
+
+def test_that_an_edge_of_a_panel_has_room_for_the_least_tile_between_two_connectors() -> None:
+    """Fits go to the bound; at the size of a tile and its gaps alone three to five tiles of a house were missing."""
+    settings = new_settings({"material": "felt-co2"})
+    felt, cotton = find_material("felt-co2"), find_material("cotton-co2")
+    bends_mm = cotton.kerf_mm + 1.275 * cotton.connector_mm
+    assert least_feature_mm(settings) == pytest.approx(felt.min_panel_mm + 2.0 * bends_mm + cotton.kerf_mm)
+    wide = replace(settings, gap_mm=5.0)
+    assert least_feature_mm(wide) == pytest.approx(felt.min_panel_mm + 2.0 * 5.0 + cotton.kerf_mm)

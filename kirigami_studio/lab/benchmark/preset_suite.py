@@ -238,14 +238,13 @@ def other_makings(material: Material, k: int) -> Iterator[Making]:
     """Ways of making sheets of a material that are tried where the usual one is not ready."""
     usual = usual_making(material, k)
     room = OF_BED * min(machine_of(material).reach_mm)
-    if MachineKind.of(material.machine) is not MachineKind.PRINTER:
-        width = min(max(material.sheet_mm, BOARD_MM), room)
-        if usual.construction is not Construction.PINNED and stiffness(material) >= STIFF:
-            yield Making(Construction.PINNED, width, k)
-        if usual.construction is not Construction.BACKED:
-            yield Making(Construction.BACKED, width, k)
-    elif usual.construction is not Construction.PRINTED:
-        yield Making(Construction.PRINTED, material.sheet_mm, k)
+    width = min(max(material.sheet_mm, BOARD_MM), room)
+    printed = MachineKind.of(material.machine) is MachineKind.PRINTER
+    rigid = Construction.PRINTED if printed else Construction.PINNED
+    if usual.construction is not rigid and stiffness(material) >= STIFF:
+        yield Making(rigid, width, k)
+    if usual.construction is not Construction.BACKED:
+        yield Making(Construction.BACKED, width, k)
     yield from (replace(usual, width_mm=share * usual.width_mm) for share in LARGER if share * usual.width_mm <= room)
     if k < USUAL_DESIGNS:
         yield replace(usual, k=USUAL_DESIGNS)

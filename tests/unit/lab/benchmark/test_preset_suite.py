@@ -76,7 +76,7 @@ def test_that_a_material_is_made_as_usual_first_and_then_otherwise_on_its_bed(ke
         settings = PresetRun(material, "heart", making, 0).settings
         assert (settings.material, settings.width_mm) == (key, making.width_mm)
         assert making.width_mm <= max(room, material.sheet_mm)
-    if material.construction is Construction.ONE_SHEET and key != "tpu-print":
+    if material.construction is not Construction.BACKED:
         assert Construction.BACKED in {making.construction for making in others}
 
 
