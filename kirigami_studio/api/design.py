@@ -333,8 +333,7 @@ class Design:
     @property
     def iou(self) -> float:
         """Exact IoU of the polygons; of a trimmed design that of what is left."""
-        trim = self.candidate.trim
-        return self.score.iou_exact if trim is None else trim.iou
+        return self.candidate.match
 
     @property
     def tv(self) -> float:

@@ -48,6 +48,8 @@ class Request(DesignChoices):
     )
     #: unit cells, 0.02..0.4; depth of the material that trimming leaves at every hinge
     keep: float = field(default=KEEP, kw_only=True)
+    #: Whether designs that cover the target may be made where no closed sheet shows it, see :attr:`may_cover`
+    covers: bool = field(default=True, kw_only=True)
     #: > 0, optional; wall time after which the best so far are returned; the first batch is always scored
     budget_seconds: float | None = field(
         default=None,
@@ -146,6 +148,15 @@ class Request(DesignChoices):
         """Most designs that are fitted from the uniform sheet: a shape may offer fewer poses to begin with."""
         possible = self.polish and self.near is None and self.budget_seconds is None
         return min(self.guided, self.k // 4) if possible else 0
+
+    @property
+    def may_cover(self) -> bool:
+        """Whether its run makes designs that cover the target, where that shows more of it than closed sheets do.
+
+        Like fits from the uniform sheet they do not depend on the seed, and are left out where these are.  A second
+        target is for whole sheets, and pieces on pins have notches of their own.
+        """
+        return self.covers and self.fitted_starts > 0 and self.second is None and not self.pinned
 
     @property
     def even(self) -> float:

@@ -75,6 +75,7 @@ def fit_cover(
     symmetry: Symmetry | None = None,
     even: float = 0.0,
     least_panel: float = 0.0,
+    notched: bool = False,
 ) -> Cover:
     """Fit a polished sheet so that its trimmed silhouette matches best.
 
@@ -95,6 +96,9 @@ def fit_cover(
         Voids whose ratio stays exactly as it is.
     free_rim, symmetry, even, least_panel
         As for :func:`polish`.
+    notched : bool
+        Whether notches that no closed sheet shows are cut out in any case, and the sheet is trimmed after the fit
+        alone: for one that was fitted to the target itself, which this one would not be a better trim of.
 
     Raises
     ------
@@ -111,10 +115,11 @@ def fit_cover(
     filled = notches_filled(target)
     if filled is not None:
         laid = align(outline, filled.outline.points)
-        if exact_iou(laid.apply(outline), filled.outline) > exact_iou(pose.apply(outline), target):
+        if notched or exact_iou(laid.apply(outline), filled.outline) > exact_iou(pose.apply(outline), target):
             wanted, place, trimmed = filled.outline, filled.frame, _trimmed_deep
             pose = place.compose(laid)
-    best = trimmed(Fit(sheet, pose, 0.0, 0, 0), target, phi, keep, cancel)
+    first = Fit(sheet, pose, 0.0, 0, 0)
+    best = None if notched else trimmed(first, target, phi, keep, cancel)
     fit = polish(
         sheet,
         wanted,
@@ -133,9 +138,9 @@ def fit_cover(
     fit = replace(fit, pose=place.compose(fit.pose))
     if fit.steps and path_contact(deploy(fit.sheet), phi) is None and not cancel():
         other = trimmed(fit, target, phi, keep, cancel)
-        if other.trim.iou > best.trim.iou:
+        if best is None or other.trim.iou > best.trim.iou:
             best = other
-    return best
+    return best or trimmed(first, target, phi, keep, cancel)
 
 
 @lru_cache(maxsize=16)
