@@ -19,6 +19,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.symmetry import TOLERANCE, symmetry_of, turned
+from kirigami_studio.outlines.turning import sides_needed, turn_back
 
 #: Vertices of circles and ellipses: their areas are within 0.002 % of the true ones.
 ROUND_VERTICES = 720
@@ -109,12 +110,28 @@ class StartShape:
         return math.log((rows + 1) / (columns + 1)) if self.aspect is None else -math.log(self.aspect)
 
     @property
+    def sides(self) -> float:
+        """Number of its straight sides; endless where it is round."""
+        if self.outline is None:
+            return 4
+        count = len(self.outline.points)
+        return count if count <= MOST_SIDES else math.inf
+
+    @property
     def digest(self) -> str:
         """The start of the SHA-256 of its points, or nothing for a rectangle: names of files say little."""
         return "" if self.outline is None else hashlib.sha256(self.outline.points.tobytes()).hexdigest()[:16]
 
 
 RECTANGLE = StartShape()
+
+#: Closed sheets show a notch badly that turns back by this (radians), and not at all from half a turn on.
+TURNS_BACK = math.radians(170.0)
+
+
+def no_closed_sheet_shows(target: Outline, start: StartShape = RECTANGLE) -> bool:
+    """Whether a target turns back too far for any closed sheet, or has more arms than a start has sides."""
+    return turn_back(target).angle >= TURNS_BACK or sides_needed(target) > start.sides
 
 
 def start_shape(text: str) -> StartShape:

@@ -7,7 +7,7 @@ The *worth* of a design is its exact IoU less a price for what eyes and cutters 
                 - weight * (1 - IoU at the second target's angle)
                 - s * (EVENNESS * CV of panel areas + THIN * thinness + AT_LIMIT * share of ratios at a limit
                        + GIVEN_UP * share of the sheet that is cut away
-                       - SYMMETRY if the sheet is symmetric),        s = (2 * regular) ** 2
+                       - SYMMETRY * how far its symmetry is seen),        s = (2 * regular) ** 2
 
 ``regular`` runs from 0 (s = 0: match alone) over 0.5 (s = 1) to 1 (s = 4).  Thinness is 0 for panels whose edges and
 necks all measure :data:`SLENDER` cells or more, and 1 for a panel without any width.  All figures are those that a
@@ -27,6 +27,7 @@ from dataclasses import dataclass, field
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.pins import GAP_ROUNDING
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.preferences import FitPreference
 
@@ -41,6 +42,11 @@ AT_LIMIT = 0.01
 #: IoU that a symmetric sheet may lack and still comes first.  A leaf lacks 0.019, a mushroom 0.0205; above 0.024 clubs
 #: and spades would be symmetric at 0.97 instead of 0.99.
 SYMMETRY = 0.022
+#: Share of that which a turn is worth: eyes see a mirror axis at once, a turn hardly.
+TURN_SHARE = 0.5
+#: Below the second match a symmetric sheet is worth less, and from the first one down nothing: what it misses is seen
+#: before its symmetry is.  An icon was symmetric at 0.950 where 0.970 was found.
+SYMMETRY_SEEN = (0.95, 0.975)
 #: IoU that a sheet which is cut from whole is worth over one of which everything is cut away: a cover that gives up a
 #: tenth of its sheet comes first where it matches better by 1 %.
 GIVEN_UP = 0.1
@@ -118,14 +124,14 @@ class Ranking:
         return (2.0 * self.regular) ** 2
 
     def prices(self, candidate: Candidate) -> dict[str, float]:
-        """What is taken off the IoU, by the code of the reason that names it; a symmetric sheet has the price 0."""
+        """What is taken off the IoU, by the code of the reason that names it."""
         scale, figures = self.scale, candidate.score.evenness
         thinness = max(0.0, 1.0 - min(figures.least_edge, figures.least_neck) / SLENDER)
         return {
             "rank.less_even": scale * EVENNESS * figures.area_cv,
             "rank.thinner": scale * THIN * thinness,
             "rank.more_at_limit": scale * AT_LIMIT * figures.at_limit,
-            "rank.not_symmetric": scale * SYMMETRY * (candidate.symmetry is None),
+            "rank.not_symmetric": scale * SYMMETRY * (1.0 - _seen_symmetry(candidate)),
             "rank.gives_up": scale * GIVEN_UP * candidate.given_up,
             "rank.jams": JAMMING * self.missed(candidate),
             "rank.less_as_cut": self.losses.get(candidate, 0.0),
@@ -190,7 +196,8 @@ class Ranking:
         if not self.cuttable(first):
             return self._why_not(first)
         if first.trim is not None and first.trim.given_up:
-            return Note.of("rank.notch_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
+            shares = {"match": 100 * first.match, "percent": 100 * first.given_up}
+            return Note.of("rank.notch_cut_out", **shares, count=first.trim.given_up)
         if first.trim is not None:
             code = "rank.best_trimmed" if first.trim.iou >= most else "rank.best_balance_trimmed"
             return Note.of(code, match=100 * first.trim.iou, variation=100 * even.area_cv)
@@ -240,6 +247,15 @@ class Ranking:
             return self.pins_note(one)
         smallest_mm = one.score.evenness.least_feature_mm(self.width_mm)
         return Note.of("rank.too_thin", smallest_mm=smallest_mm, least_mm=self.least_feature_mm)
+
+
+def _seen_symmetry(candidate: Candidate) -> float:
+    """How far the symmetry of a design is seen, from 0 to 1."""
+    if candidate.symmetry is None:
+        return 0.0
+    low, high = SYMMETRY_SEEN
+    fair = min(1.0, max(0.0, (candidate.match - low) / (high - low)))
+    return fair * (TURN_SHARE if candidate.symmetry is Symmetry.HALF_TURN else 1.0)
 
 
 def _second(candidate: Candidate) -> float:

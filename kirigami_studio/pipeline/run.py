@@ -20,6 +20,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import no_closed_sheet_shows
 from kirigami_studio.pipeline.auto_grid import GridChoice, chosen_for
 from kirigami_studio.pipeline.events import (
     CandidateFound,
@@ -47,7 +48,6 @@ from kirigami_studio.pipeline.tasks import (
 )
 from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.polish.continuation import Way, first_angles
-from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
 from kirigami_studio.polish.unfolding import unfolded
 from kirigami_studio.settings.design import USUAL_GRID, RimRule
@@ -79,9 +79,8 @@ TRIMMED = 3
 
 #: Designs that cover the target are made of the best that differ.
 COVERS = 2
-#: They are made where no closed design of the run matches better than this; a shape with more arms than the start has
-#: corners may match better, for its arms may be narrow.
-COVERED_BELOW, ARMS_COVERED_BELOW = 0.97, 0.985
+#: They are made in any case where no closed design of the run matches better than this.
+COVERED_BELOW = 0.97
 
 #: Seconds between two signs of life while fits are under way.
 HEARTBEAT = 0.25
@@ -453,7 +452,7 @@ def needs_cover(request: Request, found: Sequence[Candidate]) -> bool:
     """Whether designs that cover the target may show more of it than the closed ones that were found."""
     if not request.may_cover:
         return False
-    if notches_filled(request.target) is not None:
+    if no_closed_sheet_shows(request.target, request.start):
         return True
     most = max((one.score.iou_exact for one in found if one.score.feasible), default=0.0)
     return most < COVERED_BELOW and not request.trim

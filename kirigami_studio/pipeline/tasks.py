@@ -203,8 +203,9 @@ class CoverTask:
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit and cut, unless the design crosses itself."""
         sizes = {"least_panel": request.kept_when_trimmed, "even": request.even}
+        keep = request.keep if self.candidate.trim is None else self.candidate.trim.keep
         try:
-            made = covered(self.candidate, request.target, request.keep, stopped, **sizes)
+            made = covered(self.candidate, request.target, keep, stopped, **sizes)
         except KirigamiError:
             return TaskResult(None, 1)
         return TaskResult(made.candidate, made.evaluations)

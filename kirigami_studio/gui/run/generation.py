@@ -452,13 +452,22 @@ class DesignRun(QObject):
         self._sampled.setdefault(candidate.index, candidate.score.siou)
         self._latest[candidate.index] = candidate
         self._reports += 1
-        best = min(self._latest.values(), key=self._ranking.key).score
+        best = min(self._latest.values(), key=self._ranking.key)
         if candidate.origin is Origin.GUIDED:
             self._session.set_status(
                 tr(
                     "Fitted from the uniform sheet: match {match:.1f} % (best {best:.1f} %).",
                     match=100 * candidate.score.iou_exact,
-                    best=100 * best.iou_exact,
+                    best=100 * best.match,
+                )
+            )
+        elif candidate.origin is Origin.COVERED:
+            self._session.set_status(
+                tr(
+                    "Covers the shape: match {match:.1f} %, gives up {percent:.0f} % of the sheet (best {best:.1f} %).",
+                    match=100 * candidate.match,
+                    percent=100 * candidate.given_up,
+                    best=100 * best.match,
                 )
             )
         elif candidate.index >= self._asked:
@@ -466,7 +475,7 @@ class DesignRun(QObject):
                 tr(
                     "Search found a design: match {match:.1f} % (best {best:.1f} %).",
                     match=100 * candidate.score.iou_exact,
-                    best=100 * best.iou_exact,
+                    best=100 * best.match,
                 )
             )
         elif improved:
@@ -476,7 +485,7 @@ class DesignRun(QObject):
                     "Polished {polished} of {asked} (best {best:.1f} %)",
                     polished=polished,
                     asked=self._asked,
-                    best=100 * best.iou_exact,
+                    best=100 * best.match,
                 )
             )
 
