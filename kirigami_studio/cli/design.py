@@ -34,6 +34,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
+from kirigami_studio.pipeline.auto_start import chosen_start
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
@@ -295,6 +296,8 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
     }
     if result.request.grid_chosen:
         answer["grid"], answer["grid_reason"] = list(result.request.chosen_grid), chosen_for(result.request).reason
+    if result.request.start_chosen:
+        answer["start_choice"] = {"name": result.request.start.name, "reason": chosen_start(result.request).reason}
     if not result.request.start.is_plain:
         sheet = result.best.sheet
         answer["start"] = {
@@ -456,6 +459,8 @@ def _folder_name(name: str, used: set[str]) -> str:
 
 def _say_result(target: Outline, result: Result, files: dict[str, str], verdict: Verdict) -> None:
     score, trim = result.best.score, result.best.trim
+    if result.request.start_chosen:
+        say(f"{target.name}: {chosen_start(result.request).reason}")
     if result.request.grid_chosen:
         say(f"{target.name}: {chosen_for(result.request).reason}")
     best = tr_n(

@@ -42,7 +42,10 @@ UPRIGHT = 1e-3
 #: Weight of a start unless another is asked for.
 USUAL_WEIGHT = 1.0
 #: What :func:`start_shape` reads beside files and library names.
-KINDS = ("rectangle", "square", "circle", "ellipse", "triangle", "hexagon")
+KINDS = ("auto", "rectangle", "square", "circle", "ellipse", "triangle", "hexagon", "gable", "notch")
+#: Rectangles with a fifth corner on the axis, and with a notch there.
+GABLE = ((-1.0, -1.0), (1.0, -1.0), (1.0, 0.7), (0.0, 1.3), (-1.0, 0.7))
+NOTCH = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.35, 1.0), (0.0, 0.3), (-0.35, 1.0), (-1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +103,13 @@ class StartShape:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is the paper's: a rectangle of square cells."""
+        """Whether it is the paper's: a rectangle of square cells; also one that a run has not chosen yet."""
         return self.outline is None and self.aspect is None
+
+    @property
+    def is_auto(self) -> bool:
+        """Whether runs choose it."""
+        return self.is_plain and self.name == AUTO
 
     def proportion(self, rows: int, columns: int) -> float:
         """Logarithm of height over width of a sheet of so many voids; of other shapes than rectangles by moments."""
@@ -124,6 +132,8 @@ class StartShape:
 
 
 RECTANGLE = StartShape()
+#: Name of a start that runs choose.
+AUTO = "auto"
 
 #: Closed sheets show a notch badly that turns back by this (radians), and not at all from half a turn on.
 TURNS_BACK = math.radians(170.0)
@@ -140,8 +150,9 @@ def start_shape(text: str) -> StartShape:
     Parameters
     ----------
     text : str
-        ``rectangle`` (of square cells), ``rectangle:W:H``, ``square``, ``circle``, ``ellipse`` (3:2), ``ellipse:W:H``,
-        ``triangle``, ``hexagon``, ``polygon:N``, a file that holds a shape, or the name of a library silhouette.
+        ``auto`` (runs choose it), ``rectangle`` (of square cells), ``rectangle:W:H``, ``square``, ``circle``,
+        ``ellipse`` (3:2), ``ellipse:W:H``, ``triangle``, ``hexagon``, ``polygon:N``, ``gable``, ``notch``, a file that
+        holds a shape, or the name of a library silhouette.
 
     Raises
     ------
@@ -156,6 +167,12 @@ def start_shape(text: str) -> StartShape:
     match (kind, len(numbers)):
         case ("rectangle", 0):
             return RECTANGLE
+        case ("auto", 0):
+            return StartShape(AUTO)
+        case ("gable", 0):
+            return StartShape("gable", Outline.from_points(np.array(GABLE), "gable"))
+        case ("notch", 0):
+            return StartShape("notch", Outline.from_points(np.array(NOTCH), "notch"))
         case ("square", 0):
             return StartShape("square", None, 1.0)
         case ("rectangle", 2):

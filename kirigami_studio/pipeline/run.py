@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
-from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled, SheetError
 from kirigami_studio.foundation.steps import never
@@ -20,8 +20,9 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.starts import no_closed_sheet_shows
-from kirigami_studio.pipeline.auto_grid import GridChoice, chosen_for
+from kirigami_studio.outlines.starts import RECTANGLE, no_closed_sheet_shows
+from kirigami_studio.pipeline.auto_grid import GridChoice, Trials, chosen_for
+from kirigami_studio.pipeline.auto_start import StartChoice, chosen_start
 from kirigami_studio.pipeline.events import (
     CandidateFound,
     CandidateImproved,
@@ -105,7 +106,7 @@ GRACE = 1.0
 
 
 def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Event]:
-    """Sample, score, polish, fit from the uniform sheet, search if asked for, finish and cover, trim if asked for, rank.
+    """Sample, score, polish, fit from the uniform sheet, search if asked for, finish, cover, trim if asked for, rank.
 
     The result does not depend on who polishes, on the number of workers, or on the order in which they end; only a
     budget makes it depend on the clock.  All samples are returned: a duplicate of a better sample is kept as it was
@@ -159,14 +160,16 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
 
 
 def with_grid(request: Request, pool: Pool | None = None) -> Request:
-    """The request on the grid that the run takes, where that was left to it: that of the design that samples are near,
-    else the one that suits the target, see :func:`grid_choice`.
+    """The request on the start and grid that the run takes, where these were left to it: those of the design that
+    samples are near, else those that suit the target, see :func:`start_choice` and :func:`grid_choice`.
 
     Raises
     ------
     TargetError
         A symmetry is asked for that the target does not have.
     """
+    if request.start.is_auto:
+        request = request.with_start(RECTANGLE if request.near is not None else start_choice(request, pool).start)
     if request.grid is not None:
         return request
     return request.resolved(grid_choice(request, pool).grid if request.near is None else request.near.grid)
@@ -180,6 +183,16 @@ def grid_choice(request: Request, pool: Pool | None = None) -> GridChoice:
     TargetError
         A symmetry is asked for that the target does not have.
     """
+    return chosen_for(request, _trials_in(pool))
+
+
+def start_choice(request: Request, pool: Pool | None = None) -> StartChoice:
+    """The start for a request that leaves it open, and the reason; see :func:`grid_choice`."""
+    return chosen_start(request, _trials_in(pool))
+
+
+def _trials_in(pool: Pool | None) -> Trials:
+    """Short fits, done by workers that are ready, else here."""
     workers = pool or shared_pool()
     ready = workers if workers.usable and workers.ready else None
 
@@ -187,7 +200,7 @@ def grid_choice(request: Request, pool: Pool | None = None) -> GridChoice:
         made = dict(filter(None, answers(ready, asked, tasks, Watch(never, time.perf_counter()))))
         return [found for place in range(len(tasks)) if (found := made[place].candidate) is not None]
 
-    return chosen_for(request, trials)
+    return trials
 
 
 def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Result:

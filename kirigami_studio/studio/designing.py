@@ -117,8 +117,16 @@ class KnownAsCut:
         return cls(one_sheet(cut), result.jam_phi, result.refusals, result.losses, found)
 
 
+@dataclass(frozen=True, slots=True)
+class StartChosen:
+    """The start that a run has chosen, and why in one sentence."""
+
+    start: StartShape
+    reason: str
+
+
 #: What a run reports.
-RunReport = Event | ModelFound | GridChosen | Decoded
+RunReport = Event | ModelFound | GridChosen | StartChosen | Decoded
 #: What fitting designs again reports.
 RefitReport = Decoded | FittedAgain | Progress | KnownAsCut
 #: Gets how far a run has come.
@@ -169,7 +177,7 @@ def run_design(
     beside: tuple[Candidate, ...] = (),
     only_new: bool = False,
     pool: Pool | None = None,
-) -> Iterator[Event | GridChosen]:
+) -> Iterator[Event | GridChosen | StartChosen]:
     """Choose the grid, run, and rank by how designs do as cut: the best that can be cut in this material first.
 
     Parameters
@@ -187,16 +195,20 @@ def run_design(
 
     Yields
     ------
-    Event or GridChosen
-        Those of the pipeline, ``GridChosen`` first where that was left to the run, and at last ``Finished``.
+    Event, GridChosen or StartChosen
+        Those of the pipeline, what was left to the run first, and at last ``Finished``.
 
     Raises
     ------
     Cancelled
         ``cancel`` returned true.
     """
-    from kirigami_studio.pipeline.run import grid_choice, run, with_grid
+    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, with_grid
 
+    if request.start.is_auto and request.near is None:
+        chosen = start_choice(request)
+        yield StartChosen(chosen.start, chosen.reason)
+        request = request.with_start(chosen.start)
     if request.grid is None and request.near is None:
         choice = grid_choice(request)
         yield GridChosen(choice.grid, choice.reason)

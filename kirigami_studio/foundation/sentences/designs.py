@@ -50,6 +50,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Mouths on the rim's {side} side must lie between 0 and {length:g} cells, in rising order and at least "
         "{least:g} cells apart."
     ),
+    "start.few_corners": mark(
+        "The flat sheet is a rectangle: the shape needs no other corners, and is expected to match {percent:.0f} %."
+    ),
+    "start.rectangle_tried": mark(
+        "The flat sheet is a rectangle: of {count} starts that were tried none is clearly better."
+    ),
+    "start.other_tried": mark(
+        "The flat sheet is '{name}', the best of {count} starts that were tried: the shape needs {sides} sides."
+    ),
     "start.not_points": mark("A start outline must be a list of at least three points [x, y] with finite numbers."),
     "start.crosses_itself": mark("The start outline crosses itself or has no area. Use one simple closed shape."),
     "start.not_convex": mark(

@@ -39,6 +39,7 @@ from kirigami_studio.studio.designing import (
     KnownAsCut,
     ModelFound,
     RunReport,
+    StartChosen,
     generating,
     request_for,
 )
@@ -429,6 +430,10 @@ class DesignRun(QObject):
                     self._request = self._request.resolved(grid)
                 self._session.set_status(reason)
                 self.grid_chosen.emit()
+            case StartChosen(start, reason):
+                if self._request is not None:
+                    self._request = self._request.with_start(start)
+                self._session.set_status(reason)
             case Started():
                 self.progressed.emit(0, report.total, tr("Starting (0 of {total})", total=report.total))
             case Progress():
