@@ -218,8 +218,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{cover:.1f} %, {given_up:.0f} % of the sheet cut away."
     ),
     "covers.turns_back": mark(
-        "No closed sheet shows the notch at {across:.0f} % of the width and {up:.0f} % of the height, where the outline "
-        "turns back by {degrees:.0f} degrees: {closed:.1f} % is the most found; with notches {cover:.1f} %, "
+        "No closed sheet shows the notch at {across:.0f} % of the width and {up:.0f} % of the height, where the "
+        "outline turns back by {degrees:.0f} degrees: {closed:.1f} % is the most found; with notches {cover:.1f} %, "
         "{given_up:.0f} % of the sheet cut away."
     ),
     "fit.stopped": mark("Fitting stopped; nothing changed."),

@@ -17,7 +17,7 @@ from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.run import with_grid
 from kirigami_studio.pipeline.tasks import TrialTask
 from kirigami_studio.polish.flat_sheet import uniform_sheet
-from kirigami_studio.project.codec import document_from_json, document_to_json
+from kirigami_studio.project.codec import decode, encode
 from kirigami_studio.project.document import Document
 
 AUTO = start_shape("auto")
@@ -66,7 +66,7 @@ def test_that_a_named_start_stays_and_an_open_one_is_chosen_and_told() -> None:
 def test_that_a_project_keeps_that_the_start_is_left_to_the_run() -> None:
     settings = replace(Request(load("heart"), (6, 7)).settings, start=AUTO)
     document = Document(load("heart"), settings)
-    assert document_from_json(document_to_json(document)).settings.start == AUTO
+    assert decode(encode(document)).settings.start == AUTO
 
 
 @pytest.mark.parametrize("name", ["gable", "notch"])

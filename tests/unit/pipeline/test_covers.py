@@ -33,7 +33,7 @@ def keyhole() -> Outline:
 
 @pytest.fixture(scope="module")
 def run(keyhole: Outline) -> Result:
-    return best_of(Request(keyhole, (9, 9), k=8, polish=3, guided=4))
+    return best_of(Request(keyhole, (8, 8), k=4, polish=3))
 
 
 @pytest.fixture(scope="module")
