@@ -122,6 +122,6 @@ def test_that_board_stage_and_cuts_have_menus_by_mouse_and_by_key(designed: Main
     menu.close()
     designed.commands["edit_target"].trigger()
     designed.commands["cuts"].trigger()
-    menu = menu_of(stage.cuts.view)
+    menu = menu_of(designed.cuts.view)
     assert designed.commands["copy_cuts"] in menu.actions()
     menu.close()

@@ -74,7 +74,7 @@ def board(window: MainWindow) -> QWidget:
 
 
 def cuts(window: MainWindow) -> QWidget:
-    window.stage.cuts_switch.click()
+    window.commands["cuts"].trigger()
     return window.stage
 
 

@@ -193,9 +193,8 @@ def test_that_the_empty_gallery_is_german(window: MainWindow) -> None:
 
 @pytest.mark.usefixtures("german")
 def test_that_the_welcome_page_is_german(window: MainWindow) -> None:
-    page = window.stage.welcome
-    assert page.headline.text() == "Mit einem Ziel beginnen"
-    assert page.offers["edit_target"].text() == "Form zeichnen" and page.guide.text() == "Handbuch"
+    page = window.welcome
+    assert page.title.text() == "Beginnen" and page.offers["open_target"].text() == "Datei öffnen"
 
 
 def without_room(designed: MainWindow) -> None:

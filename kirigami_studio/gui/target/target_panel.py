@@ -190,7 +190,7 @@ class TargetPanel(Card):
         self.buttons["edit"].setChecked(on)
         for part in (self.tools, self.refine):
             part.setVisible(on)
-        self.start.setVisible(not on)
+        self.buttons["edit"].setVisible(not on)  # Done leaves the board
         self.opened.fold(on)
         if on != self.editing:
             self.editing = on

@@ -13,36 +13,53 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.command import Command, WindowState, Wording
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.session.session import Session
-from kirigami_studio.gui.target.target_panel import TargetPanel
 from kirigami_studio.gui.widgets.canvas import ZOOM_STEP
 from kirigami_studio.gui.window.appearance import Appearance
-from kirigami_studio.gui.window.columns import Columns
+from kirigami_studio.gui.window.pages import WORDS, Page, Pages
 from kirigami_studio.gui.window.presenters import Presenters
 from kirigami_studio.gui.window.stage_panel import StagePanel
 
 #: Commands that switch what is drawn over the layout.
 OVERLAY_COMMANDS = {f"show_{overlay.value}": overlay for overlay in Overlay}
+#: Commands that turn the pages of the window.
+PAGE_COMMANDS = {f"page_{page.value}": page for page in Page}
 
 
 def commands(
-    columns: Columns,
+    pages: Pages,
     session: Session,
     presenters: Presenters,
     appearance: Appearance,
 ) -> tuple[Command, ...]:
     """Return the commands of the View menu."""
-    stage = columns.stage
+    stage = pages.stage
     return (
-        *_deployment(stage, session),
+        *_turns(pages),
+        *_deployment(pages, session),
         *_overlays(stage),
         *_faults(stage),
-        *_pages(columns, presenters),
-        *_zooms(columns.target, stage),
+        *_views(pages, presenters),
+        *_zooms(pages),
         *_themes(appearance, presenters.welcome.switch_motion),
     )
 
 
-def _deployment(stage: StagePanel, session: Session) -> tuple[Command, ...]:
+def _turns(pages: Pages) -> tuple[Command, ...]:
+    """The pages of the window, on keys 1, 2 and 3."""
+
+    def turn(number: int, name: str, page: Page) -> Command:
+        (text, tip), shown = WORDS[page], partial(_is_on, page)
+        return Command(tr("&View"), name, tr(text), tr(tip), partial(pages.turn, page), f"{number}", checked_when=shown)
+
+    return tuple(turn(number, name, page) for number, (name, page) in enumerate(PAGE_COMMANDS.items(), start=1))
+
+
+def _is_on(page: Page, now: WindowState) -> bool:
+    return now.page == page.value
+
+
+def _deployment(pages: Pages, session: Session) -> tuple[Command, ...]:
+    stage = pages.stage
     bar, command = stage.deployment, partial(Command, tr("&View"))
     slower = tr("Play the deployment slower, down to a quarter of normal speed")
     faster = tr("Play the deployment faster, up to four times normal speed")
@@ -52,7 +69,7 @@ def _deployment(stage: StagePanel, session: Session) -> tuple[Command, ...]:
     flat, target = partial(bar.set_phi, math.pi), partial(_go_to_target, stage, session)
     jams, shown = attrgetter("ideal.enabled"), attrgetter("ideal.checked")
     return (
-        command("play", tr("&Play / pause"), tr("Play the deployment"), partial(_play, stage), "Space", "play"),
+        command("play", tr("&Play / pause"), tr("Play the deployment"), partial(_play, pages), "Space", "play", True),
         command("slower", tr("Slower"), slower, partial(speed, -1), "<"),
         command("faster", tr("Faster"), faster, partial(speed, 1), ">"),
         command("play_mode", tr("Next play m&ode"), mode, bar.options.next_mode, "Shift+P"),
@@ -107,15 +124,15 @@ def _faults(stage: StagePanel) -> tuple[Command, ...]:
     )
 
 
-def _pages(columns: Columns, presenters: Presenters) -> tuple[Command, ...]:
-    stage, compare = columns.stage, columns.gallery.bar.compare
+def _views(pages: Pages, presenters: Presenters) -> tuple[Command, ...]:
+    stage, compare = pages.stage, pages.gallery.bar.compare
     command, switching = partial(Command, tr("&View")), partial(Command.switching, tr("&View"))
     before, cuts = tr("Show the design before polishing"), tr("Show the cut plan at kerf width")
     plots = tr("Show match, size and gaps at every angle")
     every = tr("Show all designs flat, half open and open in one window")
     return (
         switching("before", tr("&Before polish"), before, stage.before.switch, "B", "before", gap=True),
-        switching("cuts", tr("&Cuts"), cuts, stage.cuts_switch.switch, "C", "cuts"),
+        command("cuts", tr("&Cuts"), cuts, pages.show_cuts, "C", "cuts"),
         switching("plots", tr("P&lots"), plots, stage.plots_switch.switch, "J", "plots"),
         switching("compare", tr("Si&de by side"), tr("Compare designs side by side"), compare.switch, "K", "compare"),
         command("all_designs", tr("All designs"), every, presenters.all_designs.toggle, "A", "table"),
@@ -131,17 +148,21 @@ def _pages(columns: Columns, presenters: Presenters) -> tuple[Command, ...]:
     )
 
 
-def _zooms(board: TargetPanel, stage: StagePanel) -> tuple[Command, ...]:
-    """What is in sight is zoomed: the drawing board while it is open, else the stage."""
-    command, real = partial(Command, tr("&View")), tr("Show a millimetre as long as it is on paper")
+def _zooms(pages: Pages) -> tuple[Command, ...]:
+    """What is in sight is zoomed: the drawing board, the stage or the sheet."""
+    board, command, real = (
+        pages.target,
+        partial(Command, tr("&View")),
+        tr("Show a millimetre as long as it is on paper"),
+    )
     drawn = partial(command, enabled_when=attrgetter("editing_target"))
     selected = tr("Show what is selected as large as possible")
 
     def fit() -> None:
-        board.view.fit() if board.editing else stage.fit()
+        pages.in_sight.fit()
 
     def zoom(factor: float) -> None:
-        board.view.zoom(factor) if board.editing else stage.zoom(factor)
+        pages.in_sight.zoom(factor)
 
     return (
         command("fit", tr("Show &everything"), tr("Zoom to show everything"), fit, "0; Ctrl+0", "fit", gap=True),
@@ -172,18 +193,18 @@ def _theme_wording(now: WindowState) -> Wording:
     return Wording(tr("Light t&heme"), tip, "sun") if now.dark else Wording(tr("Dark t&heme"), tip, "moon")
 
 
-def _play(stage: StagePanel) -> None:
+def _play(pages: Pages) -> None:
     """Space plays, unless the keyboard's focus is on a button or a list of choices, which use the key themselves.
 
     The mouse gives none of them the focus, so after a click Space plays.
     """
-    focused = stage.window().focusWidget()
+    focused = pages.window().focusWidget()
     if isinstance(focused, QAbstractButton):
         focused.click()
     elif isinstance(focused, QComboBox):
         focused.showPopup()
-    elif stage.player.play.isEnabled():
-        stage.player.play.toggle()
+    elif pages.player.play.isEnabled():
+        pages.player.play.toggle()
 
 
 def _go_to_target(stage: StagePanel, session: Session) -> None:
