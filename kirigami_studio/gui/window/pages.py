@@ -40,7 +40,7 @@ WORDS = {
 SHARES = {
     Page.SHAPE: ((1.0, 284, 9999), (0.27, 322, 380)),
     Page.DESIGN: ((0.225, 284, 340), (0.25, 322, 372)),
-    Page.MAKE: ((0.25, 316, 380), (0.35, 330, 900)),
+    Page.MAKE: ((0.25, 336, 380), (0.35, 330, 900)),
 }
 #: Largest widths of the button that starts a run, and of the second target, pixels.
 BUTTON, SECOND = 340, 420
@@ -69,7 +69,7 @@ class Pages(QWidget):
         }
         left, right = QWidget(), QWidget()
         second.setMaximumWidth(SECOND)
-        start = row((second, 3), ..., (self.run, 4), spacing=12)
+        start = row((second, 300), ..., (self.run, 400), spacing=12)
         column((self.target, 1), self.settings, start, (self.fabrication, 1), on=left, spacing=8)
         column((self.gallery, 1), (self.cuts, 1), (self.welcome, 1), on=right, spacing=8)
         self._outer = left, right
