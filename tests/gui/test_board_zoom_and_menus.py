@@ -80,10 +80,12 @@ def test_that_show_everything_shows_the_whole_drawing_however_far_it_was_moved(p
 
 
 def test_that_keys_show_the_real_size_the_selection_and_everything(plate: MainWindow, qtbot: QtBot) -> None:
+    plate.resize(1200, 640)
+    QApplication.processEvents()
     view, fitted = plate.target.view, transform(plate)
-    qtbot.keyClick(view, Qt.Key.Key_1)
+    qtbot.keyClick(plate, Qt.Key.Key_1, Qt.KeyboardModifier.ControlModifier)
     assert transform(plate).scale == pytest.approx(view.screen().physicalDotsPerInch() / 25.4)
-    qtbot.keyClick(view, Qt.Key.Key_2)
+    qtbot.keyClick(plate, Qt.Key.Key_2, Qt.KeyboardModifier.ControlModifier)
     (left, bottom), (right, top) = pixel(plate, (-20, -10)), pixel(plate, (20, 10))
     room = view.scene_box()  # between the rulers
     assert right - left > 0.8 * room.width() or bottom - top > 0.8 * room.height()

@@ -35,10 +35,7 @@ NONE, PRESENT = "none", "present"
 #: The angle (degrees) is above that of the first target by this at least.
 ANGLE_STEP = 0.1
 PICTURE = QSize(20, 20)
-ABOUT_SECOND = mark(
-    "Second target: a shape that the sheet should also show on its way, in any size and rotation. Choose it here, or "
-    "drop a file with a shape."
-)
+ABOUT_SECOND = mark("Second target: a shape that the sheet also shows on its way. Choose it, or drop a file here.")
 
 
 class SecondTargetRow(QWidget):

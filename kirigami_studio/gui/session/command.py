@@ -66,7 +66,7 @@ def always(state: WindowState) -> bool:
 class Command:
     """One command of the window."""
 
-    menu: str  #: title of the menu that it stands in
+    menu: str  #: title of the menu that it stands in, "|" between a menu and one inside
     id: str  #: name of its action
     text: str  #: as in the menu, ``&`` before the mnemonic
     tip: str  #: what it does, for the status line and the tooltip

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from textwrap import wrap
+
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QFontMetrics
 
 #: No text has more letters in a pixel, marks above and below letters among them; longer ones are not measured.
 LETTERS_PER_PIXEL = 2
-#: Letters that anybody reads of one line, in a tooltip.
-LONGEST_LINE = 4000
+#: Letters that anybody reads of one line, in a tooltip; and that its lines are broken at.
+LONGEST_LINE, TOOLTIP_LINE = 4000, 72
 
 
 def fits(metrics: QFontMetrics, text: str, room: float) -> bool:
@@ -34,3 +36,15 @@ def fitted(
 def shortened(text: str) -> str:
     """The text as far as anybody reads it in one line."""
     return text if len(text) <= LONGEST_LINE else f"{text[:LONGEST_LINE]} \N{HORIZONTAL ELLIPSIS}"
+
+
+def wrapped(text: str, most: int | None = None) -> str:
+    """The text of a tooltip in lines that are soon read, ``most`` of them."""
+    lines = [
+        part
+        for line in shortened(text).split("\n")
+        for part in wrap(line, TOOLTIP_LINE, break_on_hyphens=False) or [""]
+    ]
+    if most is not None and len(lines) > most:
+        lines = [*lines[: most - 1], f"{lines[most - 1]} \N{HORIZONTAL ELLIPSIS}"]
+    return "\n".join(lines)

@@ -166,6 +166,7 @@ class Pages(QWidget):
         left, right = (round(min(max(share * width, least), most)) for share, least, most in SHARES[self.page])
         if self.page in self._moved:
             left, _, right = self._moved[self.page]
+            width = self.splitter.width() - 2 * self.splitter.handleWidth()
         if not self._whole:
             left = width - right if self.page is Page.SHAPE else left
             self.splitter.setSizes([left, max(width - left - right, 0), right])

@@ -90,8 +90,8 @@ class StagePanel(Card):
         self.before.switch.toggled.connect(self._toggle_before)
         self.trim = SwitchButton("trim", "trim", tr(TRIM))
         tip = tr(
-            "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void, an outline corner "
-            "or an edge cut. Alt+click or L: lock. Arrows: next void; + and -: ratio."
+            "Edit by hand (H). Scroll over a void, or drag it, a corner of the outline or an edge cut. "
+            "L locks; arrows go to the next void."
         )
         self.hand = SwitchButton("hand", "hand", tip)
         self.hand.switch.toggled.connect(self._toggle_hand)

@@ -35,10 +35,10 @@ def commands(
     stage = pages.stage
     return (
         *_turns(pages),
+        *_views(pages, presenters),
         *_deployment(pages, session),
         *_overlays(stage),
         *_faults(stage),
-        *_views(pages, presenters),
         *_zooms(pages),
         *_themes(appearance, presenters.welcome.switch_motion),
     )
@@ -58,9 +58,15 @@ def _is_on(page: Page, now: WindowState) -> bool:
     return now.page == page.value
 
 
+def inside(title: str) -> str:
+    """A menu in the View menu."""
+    return f"{tr('&View')}|{title}"
+
+
 def _deployment(pages: Pages, session: Session) -> tuple[Command, ...]:
     stage = pages.stage
-    bar, command = stage.deployment, partial(Command, tr("&View"))
+    menu = inside(tr("Pla&y"))
+    bar, command = stage.deployment, partial(Command, menu)
     slower = tr("Play the deployment slower, down to a quarter of normal speed")
     faster = tr("Play the deployment faster, up to four times normal speed")
     mode, speed = tr("Switch between back and forth, loop and once"), bar.options.change_speed
@@ -69,13 +75,13 @@ def _deployment(pages: Pages, session: Session) -> tuple[Command, ...]:
     flat, target = partial(bar.set_phi, math.pi), partial(_go_to_target, stage, session)
     jams, shown = attrgetter("ideal.enabled"), attrgetter("ideal.checked")
     return (
-        command("play", tr("&Play / pause"), tr("Play the deployment"), partial(_play, pages), "Space", "play", True),
+        command("play", tr("&Play / pause"), tr("Play the deployment"), partial(_play, pages), "Space", "play"),
         command("slower", tr("Slower"), slower, partial(speed, -1), "<"),
         command("faster", tr("Faster"), faster, partial(speed, 1), ">"),
         command("play_mode", tr("Next play m&ode"), mode, bar.options.next_mode, "Shift+P"),
         command("to_flat", tr("&Flat sheet (180°)"), tr("Show the sheet flat"), flat, "Ctrl+Left"),
         command("to_target", tr("&Target angle"), tr("Show the target angle"), target, "Ctrl+Right"),
-        Command.switching(tr("&View"), "as_cut", tr("As cut"), as_cut, bar.as_cut, "Shift+C", "connector"),
+        Command.switching(menu, "as_cut", tr("As cut"), as_cut, bar.as_cut, "Shift+C", "connector"),
         command(
             "ideal",
             tr("Ideal beyond the &jam"),
@@ -91,7 +97,7 @@ def _deployment(pages: Pages, session: Session) -> tuple[Command, ...]:
 def _overlays(stage: StagePanel) -> tuple[Command, ...]:
     def overlay(name: str, text: str, key: str, icon: str, tip: str, gap: bool = False) -> Command:
         return Command.switching(
-            tr("&View"), name, text, tip, stage.overlays[OVERLAY_COMMANDS[name]], key, icon, gap=gap
+            inside(tr("&Overlays")), name, text, tip, stage.overlays[OVERLAY_COMMANDS[name]], key, icon, gap=gap
         )
 
     small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
@@ -99,7 +105,7 @@ def _overlays(stage: StagePanel) -> tuple[Command, ...]:
     grips = tr("Mark the panels to hold and to pull so that the sheet opens as designed")
     opening = tr("Colour voids by their area at this angle, mm²")
     return (
-        overlay("show_target", tr("Tar&get outline"), "T", "target", tr("Show the target's outline"), gap=True),
+        overlay("show_target", tr("Tar&get outline"), "T", "target", tr("Show the target's outline")),
         overlay("show_mismatch", tr("&Mismatch"), "M", "mismatch", tr("Show missing and extra area")),
         overlay("show_faults", tr("F&aults"), "F", "fault", tr("Mark inverted panels and contacts")),
         overlay("show_stretch", tr("Connector stretch"), "Shift+X", "connector", stretch),
@@ -115,9 +121,9 @@ def _overlays(stage: StagePanel) -> tuple[Command, ...]:
 
 
 def _faults(stage: StagePanel) -> tuple[Command, ...]:
-    command, step = partial(Command, tr("&View")), stage.tour.step
+    command, step = partial(Command, inside(tr("&Overlays"))), stage.tour.step
     return (
-        command("next_fault", tr("Ne&xt fault"), tr("Zoom to the next fault"), partial(step, 1), "F3"),
+        command("next_fault", tr("Ne&xt fault"), tr("Zoom to the next fault"), partial(step, 1), "F3", gap=True),
         command(
             "previous_fault", tr("Previo&us fault"), tr("Zoom to the previous fault"), partial(step, -1), "Shift+F3"
         ),
@@ -150,11 +156,8 @@ def _views(pages: Pages, presenters: Presenters) -> tuple[Command, ...]:
 
 def _zooms(pages: Pages) -> tuple[Command, ...]:
     """What is in sight is zoomed: the drawing board, the stage or the sheet."""
-    board, command, real = (
-        pages.target,
-        partial(Command, tr("&View")),
-        tr("Show a millimetre as long as it is on paper"),
-    )
+    board, command = pages.target, partial(Command, inside(tr("&Zoom")))
+    real = tr("Show a millimetre as long as it is on paper")
     drawn = partial(command, enabled_when=attrgetter("editing_target"))
     selected = tr("Show what is selected as large as possible")
 
@@ -165,7 +168,7 @@ def _zooms(pages: Pages) -> tuple[Command, ...]:
         pages.in_sight.zoom(factor)
 
     return (
-        command("fit", tr("Show &everything"), tr("Zoom to show everything"), fit, "0; Ctrl+0", "fit", gap=True),
+        command("fit", tr("Show &everything"), tr("Zoom to show everything"), fit, "0; Ctrl+0", "fit"),
         command("zoom_in", tr("Zoom in"), tr("Show it larger"), partial(zoom, ZOOM_STEP), "Ctrl++; Ctrl+="),
         command("zoom_out", tr("Zoom out"), tr("Show it smaller"), partial(zoom, 1.0 / ZOOM_STEP), "Ctrl+-"),
         drawn("zoom_real", tr("Actual size"), real, board.view.zoom_to_real_size, "Ctrl+1"),
@@ -175,14 +178,14 @@ def _zooms(pages: Pages) -> tuple[Command, ...]:
 
 def _themes(appearance: Appearance, switch_motion: Callable[[], None]) -> tuple[Command, ...]:
     command, motion = (
-        partial(Command, tr("&View")),
-        tr("Nothing moves by itself, such as the sample on the empty stage"),
+        partial(Command, inside(tr("Loo&k"))),
+        tr("Nothing moves by itself, such as the sample on the first page"),
     )
     dark, tip = tr("Dark t&heme"), tr("Switch between light and dark")
     followed, still = attrgetter("follows_system"), attrgetter("still")
     system, match = tr("Follow the s&ystem"), tr("Match the system theme")
     return (
-        command("theme", dark, tip, appearance.switch, "Ctrl+Alt+D", "moon", gap=True, worded=_theme_wording),
+        command("theme", dark, tip, appearance.switch, "Ctrl+Alt+D", "moon", worded=_theme_wording),
         command("theme_system", system, match, appearance.follow_system, checked_when=followed),
         command("still", tr("Reduce motion"), motion, switch_motion, checked_when=still),
     )
