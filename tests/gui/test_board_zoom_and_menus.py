@@ -80,7 +80,7 @@ def test_that_show_everything_shows_the_whole_drawing_however_far_it_was_moved(p
 
 
 def test_that_keys_show_the_real_size_the_selection_and_everything(plate: MainWindow, qtbot: QtBot) -> None:
-    plate.resize(1200, 640)
+    plate.resize(1200, 800)
     QApplication.processEvents()
     view, fitted = plate.target.view, transform(plate)
     qtbot.keyClick(plate, Qt.Key.Key_1, Qt.KeyboardModifier.ControlModifier)
@@ -107,6 +107,7 @@ def test_that_zoom_commands_belong_to_the_board_while_it_is_open_and_to_the_stag
     designed.commands["zoom_out"].trigger()
     assert view.transform() is not None and transform(designed).scale == pytest.approx(opened.scale / 1.2)
     designed.commands["edit_target"].trigger()
+    QApplication.processEvents()  # the page lays itself out
     now = stage.transform()
     assert now is not None and now.scale == pytest.approx(after.scale, rel=0.01)
 
