@@ -8,13 +8,17 @@ from itertools import permutations
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QPoint, QRect, QSettings, Qt
-from PySide6.QtGui import QKeySequence
+from PySide6.QtCore import QEvent, QPoint, QRect, QSettings, Qt
+from PySide6.QtGui import QHelpEvent, QKeySequence
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QPushButton, QWidget
+from PySide6.QtWidgets import QApplication, QMenu, QPushButton, QToolTip, QWidget
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.fabricate.machine import find_machine
+from kirigami_studio.gui.make.cut_view import CutOverlay
+from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks
+from kirigami_studio.gui.widgets.fitted_text import BRIEF, CONTROLS, TOOLTIP_LINE, wrapped
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -250,3 +254,48 @@ def test_that_a_heart_in_plywood_is_files_after_four_actions(
     maker.press("Ctrl+E")
     until(lambda: any(tmp_path.rglob("layer-1*")))
     assert maker.actions == 4
+
+
+def test_that_the_sheet_is_shown_on_the_bed_of_its_machine(designed: MainWindow) -> None:
+    designed.services.fabrication.change(machine="k40", material="card-co2")
+    designed.pages.turn(Page.MAKE)
+    cuts = designed.cuts
+    alone = cuts.view.scene_bounds()
+    cuts.toggles[CutOverlay.BED].click()
+    bounds = cuts.view.scene_bounds()
+    width, height = find_machine("k40").reach_mm
+    assert alone is not None and bounds is not None
+    assert (bounds.right, bounds.top) == pytest.approx((width, height), abs=1e-6) and bounds.right > alone.right
+    assert any(f"{width:.0f}" in chip.text for chip in cuts.view._chips())
+
+
+def test_that_a_success_goes_by_itself_and_a_warning_stays(designed: MainWindow) -> None:
+    bar = designed.messages
+    bar.dismiss(*Tone)
+    bar.add(Message("Careful.", Tone.WARNING))
+    assert not bar._fading.isActive()
+    bar.add(Message("Exported heart.dxf.", Tone.DONE))
+    assert bar._fading.isActive()
+    bar._fading.timeout.emit()
+    assert [one.sentence for one in bar.messages] == ["Careful."] and not bar._fading.isActive()
+
+
+def test_that_tooltips_of_controls_are_two_short_lines(designed: MainWindow) -> None:
+    controls = [one for one in designed.findChildren(QWidget) if isinstance(one, CONTROLS) and one.toolTip()]
+    assert len(controls) > 60
+    for control in controls:
+        lines = wrapped(control.toolTip(), BRIEF).split("\n")
+        assert len(lines) <= 2 and max(map(len, lines)) <= TOOLTIP_LINE + 2, control.objectName()
+    control = designed.settings.auto
+    control.setToolTip("word " * 200)
+    event = QHelpEvent(QEvent.Type.ToolTip, QPoint(4, 4), control.mapToGlobal(QPoint(4, 4)))
+    QApplication.sendEvent(control, event)
+    assert 0 < max(map(len, QToolTip.text().split("\n"))) <= TOOLTIP_LINE
+    QToolTip.hideText()
+
+
+def test_that_no_menu_is_higher_than_a_small_screen(designed: MainWindow) -> None:
+    menus = [menu for menu in designed.menuBar().findChildren(QMenu) if menu.actions()]
+    assert len(menus) > 8
+    for menu in menus:
+        assert menu.sizeHint().height() <= 720, menu.title()

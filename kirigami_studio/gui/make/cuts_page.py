@@ -49,6 +49,7 @@ OVERLAYS = (
         mark("Show connectors. Dark is narrow, light is wide (reversed in the dark theme)."),
     ),
     (CutOverlay.PROBLEMS, "fault", mark("Mark problems found by the cut check.")),
+    (CutOverlay.BED, "rectangle", mark("Show the sheet on the machine's bed.")),
 )
 
 

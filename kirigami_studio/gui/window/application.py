@@ -16,22 +16,13 @@ from PySide6.QtCore import (
     Qt,
     QTimer,
 )
-from PySide6.QtGui import QFileOpenEvent, QFont, QFontDatabase, QGuiApplication, QHelpEvent
-from PySide6.QtWidgets import (
-    QAbstractButton,
-    QAbstractItemView,
-    QAbstractSpinBox,
-    QApplication,
-    QComboBox,
-    QToolTip,
-    QWidget,
-)
+from PySide6.QtGui import QFileOpenEvent, QFont, QFontDatabase, QGuiApplication
+from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.files.file_dialogs import FileDialogs
 from kirigami_studio.gui.widgets import theme
-from kirigami_studio.gui.widgets.fitted_text import wrapped
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.uncaught_errors import log_qt_messages, show_uncaught
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -69,26 +60,6 @@ TOUCHES = frozenset(
         QEvent.Type.Resize,
     }
 )
-
-
-#: What is pressed, turned or typed into; lines of its tooltips.
-CONTROLS, BRIEF = (QAbstractButton, QAbstractSpinBox, QComboBox), 2
-
-
-class BriefTooltips(QObject):
-    """Shows the tooltips of controls in two short lines: more would lie over what it is about.
-
-    Others are wrapped, and keep all that they tell of a design.
-    """
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        if event.type() != QEvent.Type.ToolTip or not isinstance(watched, QWidget) or not isinstance(event, QHelpEvent):
-            return False
-        if not watched.toolTip() or isinstance(watched.parent(), QAbstractItemView):
-            return False
-        most = BRIEF if isinstance(watched, CONTROLS) else None
-        QToolTip.showText(event.globalPos(), wrapped(watched.toolTip(), most), watched)
-        return True
 
 
 class FileOpening(QObject):
@@ -169,7 +140,6 @@ def create_application(argv: list[str]) -> QApplication:
     QGuiApplication.setDesktopFileName("kirigami-studio")
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
     application = QApplication(argv)
-    application.installEventFilter(BriefTooltips(application))
     application.setFont(readable_font(application.font()))
     speak(SYSTEM)
     return application

@@ -16,6 +16,7 @@ from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
+from kirigami_studio.gui.widgets.fitted_text import BriefTooltips
 from kirigami_studio.gui.widgets.layouts import label
 from kirigami_studio.gui.widgets.message_bar import MessageBar
 from kirigami_studio.gui.widgets.number_field import leave_wheel
@@ -75,6 +76,7 @@ class MainWindow(QMainWindow):
         self.setCentralWidget(pages)
         self._build_status()
         leave_wheel(self)
+        BriefTooltips(self)
         for box in self.findChildren(QAbstractSpinBox):
             box.installEventFilter(self)
         ask = file_dialogs or SystemFileDialogs(self)

@@ -99,6 +99,7 @@ class Dialogs(QObject):
             return
         self.report = ExportReport(self._window, exported.verifications, self._appearance.palette, exported.verdict)
         self.report.folder_wanted.connect(show_in_folder)
+        self.report.open_wanted.connect(open_in_program)
         self.report.show()
 
     def close_report(self) -> None:
@@ -269,6 +270,11 @@ def bring_to_front(dialog: QWidget) -> None:
     dialog.show()
     dialog.raise_()
     dialog.activateWindow()
+
+
+def open_in_program(path: Path) -> None:
+    """Let the desktop open a written file in its program, such as LightBurn for its projects."""
+    QDesktopServices.openUrl(QUrl.fromLocalFile(str(path)))
 
 
 def show_in_folder(path: Path) -> None:
