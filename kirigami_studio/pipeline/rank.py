@@ -196,7 +196,7 @@ class Ranking:
         return [self._why_first(first, most), *(self._why_later(one, first) for one in candidates[1:])]
 
     def _why_first(self, first: Candidate, most: float) -> Note:
-        score, even = first.score, first.score.evenness
+        even = first.score.evenness
         if not self.cuttable(first):
             return self._why_not(first)
         if first.trim is not None and first.trim.holes_open:
