@@ -14,7 +14,7 @@ from kirigami_studio.assembly.motion import LayerMotion
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
 from kirigami_studio.assembly.rim_pieces import EndState, extend_to, roomiest_place, round_off, trim_to
-from kirigami_studio.assembly.shaping import Shaping
+from kirigami_studio.assembly.shaping import Shaping, less
 from kirigami_studio.evaluate.boundary import as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
@@ -162,7 +162,7 @@ def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: flo
         pins = as_points(motion.corners[index]) - origins[index]
         hinged = motion.hinged[index]
         drills = shapely.buffer(shapely.points(pins[hinged]), 0.5 * options.pin_mm)
-        drilled = shape.difference(shapely.union_all(drills))
+        drilled = less(shape, shapely.union_all(drills))
         place, room = roomiest_place(drilled)
         pieces.append(
             Piece(

@@ -18,7 +18,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
-from kirigami_studio.assembly.shaping import OVERLAP, Shaping, less, shared, united
+from kirigami_studio.assembly.shaping import OVERLAP, ZONE_CHORDS, Shaping, less, shared, united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
@@ -186,7 +186,11 @@ def shortest_links(body: Polygon, pins: FloatArray, inside: BaseGeometry, half_m
         Empty where no part of the piece has all pins.
     """
     centres = shapely.points(pins)
-    cores = [one for one in shapely.get_parts(body.buffer(-CLEAR_OF_EDGE * half_mm)) if np.all(shapely.contains(one, centres))]
+    cores = [
+        one
+        for one in shapely.get_parts(body.buffer(-CLEAR_OF_EDGE * half_mm))
+        if np.all(shapely.contains(one, centres))
+    ]
     if not cores:
         return Polygon()
     ends = as_plane(pins)
@@ -274,11 +278,15 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
         for index in np.argsort(-worth)[: np.count_nonzero(worth)].tolist():
             near = gap[piece == index]
             beside = near[rims[near]]
-            at_rim = shared(_together(gaps[beside]), placed[index].buffer(reach)) if len(beside) else Polygon()
+            at_rim = (
+                shared(_together(gaps[beside]), placed[index].buffer(reach, quad_segs=ZONE_CHORDS))
+                if len(beside)
+                else Polygon()
+            )
             if by_shares:
                 inside = _together(gaps[near[~rims[near]]])
                 needed = united(inside, shared(at_rim, state.shares[index]))
-                share = shared(state.shares[index], shared(state.outline, at_rim.buffer(reach)))
+                share = shared(state.shares[index], shared(state.outline, at_rim.buffer(reach, quad_segs=ZONE_CHORDS)))
                 want = needed if share.is_empty else united(needed, share)
             else:
                 near, needed, want = beside, at_rim, at_rim
@@ -323,12 +331,14 @@ def _extended(
     inside = free if within else shared(free, limit)
     may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and free.area - inside.area > LEAST_PART
     for room in (free, inside) if may_stick_out else (inside,):
-        best = shaping.with_more(index, room) if shared(room, missed).area > LEAST_PART else None
-        if best is None:
+        more = shaping.with_more(index, room) if shared(room, missed).area > LEAST_PART else None
+        if more is None:
             continue
-        added = less(best, body)
+        best, added = more
         beyond = 0.0 if within else less(added, limit).area
-        if (beyond <= LEAST_PART or beyond <= spare) and shared(added, missed).area > LEAST_PART:
+        if (beyond <= LEAST_PART or beyond <= spare) and (
+            added is room or (best.area > body.area + LEAST_PART and shared(added, missed).area > LEAST_PART)
+        ):
             shaping.add(index, best, added)
             return motion.placed(np.array([added], dtype=object), here, state.turn)[0], beyond
     return None, 0.0
@@ -346,10 +356,10 @@ def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
             room = shared(room, motion.brought_back(outline, np.array([index]), state.turn)[0])
         if room.area < LEAST_PART:
             continue
-        room = room.buffer(OVERLAP)
-        best = shaping.with_more(index, less(room, shaping.blocked(index, room)))
-        if best is not None and best.area > body.area + LEAST_PART:
-            shaping.add(index, best, less(best, body))
+        room = room.buffer(OVERLAP, join_style="mitre")
+        more = shaping.with_more(index, less(room, shaping.blocked(index, room)))
+        if more is not None and more[0].area > body.area + LEAST_PART:
+            shaping.add(index, *more)
 
 
 def roomiest_place(shape: BaseGeometry, tolerance_mm: float = 0.5) -> tuple[FloatArray, float]:

@@ -182,9 +182,11 @@ class Ranking:
         return [self._why_first(first, most), *(self._why_later(one, first) for one in candidates[1:])]
 
     def _why_first(self, first: Candidate, most: float) -> Note:
-        score, even = first.score, first.score.evenness
+        even = first.score.evenness
         if not self.cuttable(first):
             return self._why_not(first)
+        if first.trim is not None and first.trim.holes_open:
+            return Note.of("rank.holes_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
         if first.trim is not None and first.trim.given_up:
             return Note.of("rank.notch_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
         if first.trim is not None:

@@ -145,7 +145,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
         yield from work.search()
     if request.polish >= 2 * FIRST_ROUND:
         yield from work.finish()
-    if request.trim:
+    if request.trims:
         yield from work.trim()
         yield from work.cover()
     candidates = work.ranking.ranked(work.found)
@@ -206,8 +206,8 @@ def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
     grid, seed, steps, phi = request.chosen_grid, request.seed, request.steps, request.phi
     count = request.k - len(fits_from_uniform(request))
     if request.near is not None:
-        near = Near(request.near.field, rotation_of_target(request.near, request.target, phi), request.nearness)
-        fields = sample_fields(model, request.target, grid, count, seed, steps, phi, near=near)
+        near = Near(request.near.field, rotation_of_target(request.near, request.silhouette, phi), request.nearness)
+        fields = sample_fields(model, request.silhouette, grid, count, seed, steps, phi, near=near)
         return tuple(on_sheet(request, field) for field in fields)
     # The model knows no other start than the rectangle, and where mouths of that are.
     draw = (
@@ -220,7 +220,7 @@ def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
         target = fit_target(request, pose.symmetry)
         designs += draw(model, target, grid, share, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
     if len(designs) < count:
-        designs += draw(model, request.target, grid, count - len(designs), seed, steps, phi)
+        designs += draw(model, request.silhouette, grid, count - len(designs), seed, steps, phi)
     return tuple(on_sheet(request, design) for design in designs)
 
 
@@ -231,12 +231,12 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     if not request.fitted_starts:
         return []
     grid, hands = request.chosen_grid, request.fit_options.hands
-    angles = first_angles(request.target, grid, 1, request.symmetry, request.start, pinned=request.pinned)
+    angles = first_angles(request.silhouette, grid, 1, request.symmetry, request.start, pinned=request.pinned)
     if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         angles = [one for one in angles if one[1] is not None] or angles
     ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way, int]]] = {}
     for symmetry in dict.fromkeys(symmetry for _, symmetry in angles):
-        suited = Way.suited_to(request.target, symmetry)
+        suited = Way.suited_to(request.silhouette, symmetry)
         poses = [angle for angle, kept in angles if kept is symmetry]
         # Another pose gives more than another way.
         ways[symmetry] = [(angle, symmetry, way, hand) for way in suited for angle in poses for hand in hands]
@@ -249,7 +249,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
 def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, int]]:
     """Symmetries that ``count`` samples keep, and how many of them keep each."""
     grid, setting, start = request.chosen_grid, request.symmetry, request.start
-    poses = shared_symmetries(request.target, grid, setting, start, pinned=request.pinned)
+    poses = shared_symmetries(request.silhouette, grid, setting, start, pinned=request.pinned)
     poses = poses[:MOST_SYMMETRIES]
     together = count if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN) and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
@@ -393,7 +393,7 @@ class _Work:
 
     def cover(self) -> Iterator[Event]:
         """Fit sheets that cover the target with its notches filled, where no closed sheet shows them, and cut these."""
-        filled = notches_filled(self.request.target)
+        filled = notches_filled(self.request.silhouette)
         if filled is None or not self.request.fitted_starts:
             return
         covering = replace(self.request, target=filled.outline, trim=False, second=None)

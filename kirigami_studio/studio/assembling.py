@@ -133,7 +133,7 @@ def assembled(
             if machine is not None:
                 more = print_problems(plan, material_for(settings), machine)
                 report = replace(report, problems=(*more, *report.problems))
-            places = held(plan, hold) if machine is None else HeldPlaces()
+            places = held(plan, hold)
         except GEOSException as error:  # floating point ended the geometry of this one design
             raise FabricationError("pinned.not_made", reason=error) from error
         plan = replace(plan, assembly=with_places(plan.assembly, places.places))

@@ -213,7 +213,7 @@ def run_design(
 
 def why_untrimmed(result: Result) -> Note | None:
     """Why no design of a run was trimmed as asked for; None where one is."""
-    if not result.request.trim or any(one.trim is not None for one in result.candidates):
+    if not result.request.trims or any(one.trim is not None for one in result.candidates):
         return None
     return Note("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed", {})
 
@@ -281,7 +281,7 @@ def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: floa
     from kirigami_studio.pipeline.redesign import keep_for_connectors
 
     least = least_panel_mm * width_in_cells(request.chosen_grid, request.start) / cut.width_mm
-    if not request.trim:
+    if not request.trims:
         return replace(request, least_panel=least)
     # How deep material has to stay at the hinges of a trimmed sheet so that its connectors hold.
     cut = hinge_layer(cut)

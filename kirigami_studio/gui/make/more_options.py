@@ -108,11 +108,11 @@ class MoreOptions(QWidget):
             return
         self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm, "clearance_mm": sizes.clearance_mm})
         pinned = construction is Construction.PINNED
-        for name in ("fastener", "held_by", "moved_by"):
+        for name in ("fastener", "moved_by"):
             self.files.fields[name].setEnabled(pinned)
-        self.files.fields["held_when"].setEnabled(pinned and settings.held_by is not HoldKind.NONE)
+        self.files.fields["held_when"].setEnabled(settings.held_by is not HoldKind.NONE)
         for name in ("magnet_mm", "magnet_height_mm"):
-            self.files.fields[name].setEnabled(pinned and settings.held_by is HoldKind.MAGNETS)
+            self.files.fields[name].setEnabled(settings.held_by is HoldKind.MAGNETS)
         for name in ("pin_mm", "ear_mm", "clearance_mm"):
             self.files.fields[name].setEnabled(pinned or construction is Construction.PRINTED)
         for name in ("gap_mm", "second_material", "board_cut"):

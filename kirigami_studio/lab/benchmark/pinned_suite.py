@@ -205,9 +205,7 @@ def design_pinned(
     return PinnedTable(cut.material, cut.width_mm, tuple(found))
 
 
-def _made(
-    best: Candidate, ranking: Ranking, target: Outline, cut: FabricationSettings, looked_at: int
-) -> PinnedDesign:
+def _made(best: Candidate, ranking: Ranking, target: Outline, cut: FabricationSettings, looked_at: int) -> PinnedDesign:
     """Figures of a design and of its pieces; those of the pieces say nothing where there are none."""
     rows, columns = best.sheet.grid
     score = best.score

@@ -30,7 +30,7 @@ from kirigami_studio.foundation.errors import ExportError, KirigamiError, UsageE
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.processes import Workers
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.silhouettes import load, names
+from kirigami_studio.outlines.silhouettes import load, solid_names
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import new_settings
@@ -541,7 +541,7 @@ def pinned(arguments: argparse.Namespace) -> int:
     from kirigami_studio.lab.benchmark.pinned_suite import design_pinned
 
     line = ProgressLine()
-    named = names() if arguments.targets == ["library"] else arguments.targets
+    named = solid_names() if arguments.targets == ["library"] else arguments.targets
     grid = parse_grid_or_auto(arguments.grid)
     chosen = {} if grid is None else {"grid": grid, "auto_grid": False}
     cut = {"material": arguments.material, "construction": Construction.PINNED, "width_mm": arguments.width_mm}
@@ -563,7 +563,7 @@ def as_cut(arguments: argparse.Namespace) -> int:
     from kirigami_studio.lab.benchmark.as_cut_suite import measure_as_cut
 
     line = ProgressLine()
-    named = names() if arguments.targets == ["library"] else arguments.targets
+    named = solid_names() if arguments.targets == ["library"] else arguments.targets
     outlines = [target.read() for target in read_targets(list(named))]
     figures = measure_as_cut(
         outlines,
@@ -622,7 +622,7 @@ def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
 def _target_sets(arguments: argparse.Namespace, exact: bool) -> dict[str, list[Outline]]:
     """Named lists of targets: those of ``--targets``, or ``--count`` of a split of every family."""
     if arguments.targets == ["library"]:
-        return {"library": [load(name) for name in names()]}
+        return {"library": [load(name) for name in solid_names()]}
     if arguments.targets:
         found = [named.read() for named in read_targets(arguments.targets)]
         if not found:

@@ -484,8 +484,11 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--materials", nargs="+", default=[], metavar="KEY", help="of bundled materials (default: all)"),
         option("--shapes", nargs="+", default=[], metavar="NAME",
                help="silhouettes of the library (default: hexagon house heart star letter-l gear)"),
+        option("--runs", metavar="FILE", help="keep finished runs there, and do not do again what it has"),
+        option("--into", metavar="FILE", help="write the table into this Markdown file, in the place marked for it"),
         samples(32), SEED, *FIGURES,
-    ), ("kirigami-studio benchmark presets --materials card-co2 --k 8",)),
+    ), ("kirigami-studio benchmark presets --materials card-co2 --k 8",
+        "kirigami-studio benchmark presets --k 4 --runs runs/presets.jsonl --into docs/materials.md")),
 )  # fmt: skip
 
 #: Groups of sub-commands, and what each is for.
