@@ -344,8 +344,7 @@ class Design:
     @property
     def iou(self) -> float:
         """Exact IoU of the polygons; of a trimmed design that of what is left."""
-        trim = self.candidate.trim
-        return self.score.iou_exact if trim is None else trim.iou
+        return self.candidate.match
 
     @property
     def tv(self) -> float:
@@ -364,8 +363,18 @@ class Design:
 
     @property
     def trimmed(self) -> bool:
-        """Whether edge panels were cut along the target."""
+        """Whether panels were cut along the target."""
         return self.candidate.trim is not None
+
+    @property
+    def family(self) -> str:
+        """``closed`` where the whole sheet shows the target, ``cover`` where parts of it are cut away."""
+        return self.candidate.family.value
+
+    @property
+    def given_up(self) -> float:
+        """Share of the flat sheet's area that is cut away."""
+        return self.candidate.given_up
 
     @property
     def symmetry(self) -> str | None:

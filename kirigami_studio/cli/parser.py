@@ -116,8 +116,9 @@ START = option(
     "--start",
     default="rectangle",
     metavar="SHAPE",
-    help="shape of the flat sheet: rectangle, square, rectangle:W:H, circle, ellipse:W:H, triangle, hexagon, "
-    "polygon:N, a file or library name of a shape, hollows and all (default rectangle)",
+    help="shape of the flat sheet: auto (a rectangle, or what short fits find better), rectangle, square, "
+    "rectangle:W:H, circle, ellipse:W:H, triangle, hexagon, polygon:N, gable, notch, a file or library name of a "
+    "shape, hollows and all (default rectangle)",
 )
 #: How firmly they keep that.
 (START_WEIGHT,) = setting_options(StartShape)

@@ -572,7 +572,7 @@ def match_of(candidate: Candidate, as_cut: AsCut | None) -> float:
     """IoU with the target: as cut where that is known, else as designed and trimmed."""
     if as_cut is not None and as_cut.iou is not None:
         return as_cut.iou
-    return candidate.score.iou_exact if candidate.trim is None else candidate.trim.iou
+    return candidate.match
 
 
 def _worst_first(problems: Iterable[Problem]) -> tuple[Problem, ...]:
