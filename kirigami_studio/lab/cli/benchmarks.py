@@ -543,7 +543,7 @@ def pinned(arguments: argparse.Namespace) -> int:
     line = ProgressLine()
     named = solid_names() if arguments.targets == ["library"] else arguments.targets
     grid = parse_grid_or_auto(arguments.grid)
-    chosen = {} if grid is None else {"grid": grid, "auto_grid": False}
+    chosen: dict[str, Any] = {} if grid is None else {"grid": grid, "auto_grid": False}
     cut = {"material": arguments.material, "construction": Construction.PINNED, "width_mm": arguments.width_mm}
     found = design_pinned(
         [target.read() for target in read_targets(list(named))],
