@@ -256,9 +256,7 @@ class RoomBound:
     @classmethod
     def of(cls, before: Deployment, least: float) -> RoomBound:
         """Bounds on changes of a sheet: as asked for, or what it has."""
-        return cls(
-            min(least, least_pin_distance(before)) - GAP_ROUNDING, min(least, least_neck(before)) - GAP_ROUNDING
-        )
+        return cls(min(least, least_pin_distance(before)) - GAP_ROUNDING, min(least, least_neck(before)) - GAP_ROUNDING)
 
     def keeps(self, after: Deployment) -> bool:
         """Whether a changed sheet has as much room."""

@@ -125,6 +125,8 @@ class AssemblyJob:
         Of the flat sheet; 0 where that is not known.
     glued : Glued or None
         The hinge layer that the pieces are glued on, in the place of pins.
+    grips : (str, str) or None
+        Ids of the pieces to hold and to pull, so that the flat sheet opens.
     """
 
     assembly: Assembly
@@ -151,6 +153,7 @@ class AssemblyJob:
     drive: DriveParts | None = None
     width_mm: float = 0.0
     glued: Glued | None = None
+    grips: tuple[str, str] | None = None
 
     @property
     def whole(self) -> Assembly:
@@ -288,6 +291,7 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
     verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
     sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
+    sheet = replace(sheet, grips=job.grips)
     if (glued := job.glued) is not None:
         template = board_bed(glued.board, 0.0)
         sheet = replace(
