@@ -623,6 +623,8 @@ class PartLine:
     count : int or None
     diameter_mm, length_mm, area_mm2, cut_mm, seconds : float or None
     note : str
+    material : str
+        Name of a material, which the note has, too.
     """
 
     item: str
@@ -636,6 +638,7 @@ class PartLine:
     cut_mm: float | None = None
     seconds: float | None = None
     note: str = ""
+    material: str = ""
 
 
 #: Headings of the columns, by the names of the entries.
@@ -736,7 +739,8 @@ def _hinge_layer_parts(job: AssemblyJob) -> list[PartLine]:
 
 def _material_part(material: Material, sizes: Sequence[tuple[float, float]]) -> PartLine:
     note = tr("{material}; area of the rectangles round what is cut", material=tr(material.name))
-    return PartLine("material", count=len(sizes), note=note, area_mm2=sum(width * height for width, height in sizes))
+    area = sum(width * height for width, height in sizes)
+    return PartLine("material", count=len(sizes), note=note, area_mm2=area, material=material.name)
 
 
 def _area(piece: Piece) -> float:
@@ -790,7 +794,7 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
                 "{material}: {area:.0f} cm2 on {count} bed",
                 "{material}: {area:.0f} cm2 on {count} beds",
                 count,
-                material=tr(job.material.name),
+                material=tr(part.material),
                 area=(part.area_mm2 or 0.0) / 100.0,
             )
         elif part.item == "hinge layer":

@@ -794,6 +794,8 @@ def written(
         verified, files = tuple(found_in_files), tuple(places)
     else:
         job, verified = replace(job, verdict=judged(request, made, as_cut).level.value), ()
+        if motion is None and made.layers is not None and not kind_of(path.suffix.lower()).cuts:
+            job = replace(job, pieces=posed_pieces(request))
         files = export_files(job, path)
     verdict = judged(request, made, as_cut, verified)
     place = files[0]
