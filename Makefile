@@ -31,7 +31,7 @@ help:
 	@echo "make pinned  write DESIGNS random pinned designs and read them back without the program"
 	@echo "make prints  write PRINTS random designs on printed pins, and read them back by other libraries"
 	@echo "make checks  export SETS random designs of every construction, and check their files against their exports"
-	@echo "make readers  read ICONS drawings of npm packages, and compare them with what rsvg-convert paints"
+	@echo "make readers  read ICONS drawings of public packages and test suites, and compare them with what others paint"
 	@echo "make soak    call off 500 runs and undo 500 edits in one window, and tell what it holds"
 	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
 	@echo "make lint    run ruff, mypy and the import contracts"
@@ -123,10 +123,11 @@ DESIGNS ?= 200
 pinned: setup
 	OMP_NUM_THREADS=1 $(BIN)/python tests/random_assemblies.py $(DESIGNS)
 
-#: Icons of public packages, read and compared with an independent renderer: make readers ICONS=200 SEED=0
+#: Icons of npm packages, drawings of test suites from Debian's, and pictures: make readers ICONS=200 SEED=0 KINDS=dxf-tests
+KINDS ?=
 ICONS ?= 200
 readers: setup
-	OMP_NUM_THREADS=1 $(BIN)/python tests/icons_read.py --icons $(ICONS) --seed $(SEED) --out build/readers
+	OMP_NUM_THREADS=1 $(BIN)/python tests/drawings_read.py --icons $(ICONS) --seed $(SEED) --out build/readers $(KINDS)
 
 #: Random designs on printed pins, written and read back by lib3mf and numpy-stl.
 PRINTS ?= 40

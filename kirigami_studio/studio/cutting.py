@@ -9,6 +9,7 @@ import numpy as np
 
 from kirigami_studio.assembly.backed import LEAST_TILE_MM
 from kirigami_studio.assembly.checks import PinnedReport
+from kirigami_studio.assembly.sheet_marks import with_marks
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
@@ -26,6 +27,7 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.mechanics.connectors import flexure_length
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
+    hold_options,
     material_for,
     named_machine,
     stored_values,
@@ -59,10 +61,15 @@ def plan_of(
     FabricationError
         No such material, or a plan that cannot be made.
     """
-    trim, settings = candidate.trim, hinge_layer(settings)
+    trim, is_one_sheet, settings = candidate.trim, not is_backed(settings), hinge_layer(settings)
     kept = None if trim is None else trim.kept
-    plan = plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept, cancel)
-    return replace(engraved(plan, name), name=name) if settings.engrave and name else plan
+    motion = deployment or deploy(candidate.final_sheet)
+    plan = plan_sheet(motion, settings, kept, cancel)
+    if settings.engrave and name:
+        plan = replace(engraved(plan, name), name=name)
+    if is_one_sheet and settings.held_by is not HoldKind.NONE:
+        plan = with_marks(plan, motion, candidate.final_phi, hold_options(settings))
+    return plan
 
 
 def plan_sheet(
@@ -100,12 +107,7 @@ def plan_sheet(
     )
     told = [note for pair in stored_values(settings) if (note := unlike(*pair)) is not None]
     told += [
-        Note.of(code)
-        for code, wanted in (
-            ("hold.only_on_pins", settings.held_by is not HoldKind.NONE),
-            ("drive.only_on_pins", settings.moved_by is not DriveKind.NONE),
-        )
-        if wanted
+        Note.of(code) for code, wanted in (("drive.only_on_pins", settings.moved_by is not DriveKind.NONE),) if wanted
     ]
     if settings.machine and machine is None:
         told.append(Note.of("plan.machine_unknown", name=settings.machine, machine=plan.machine.name))
