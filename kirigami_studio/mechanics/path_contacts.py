@@ -102,9 +102,9 @@ class _Way:
                     normal * np.exp(-1j * motion[edge, 2]),
                 ]
             )
-            numbers = self._numbers[[edge, corner]]
-            row = numbers, *np.stack([places.real, places.imag], axis=1), at
-            rows.append((*row, self._angle(at, edge, corner, places, step)))
+            points = np.stack([places.real, places.imag], axis=1)
+            angle = self._angle(at, edge, corner, places, step)
+            rows.append((self._numbers[[edge, corner]], points[0], points[1], points[2], at, angle))
         return rows
 
     def _angle(self, at: int, edge: int, corner: int, places: ComplexArray, step: int) -> float:

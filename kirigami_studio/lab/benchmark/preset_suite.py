@@ -66,9 +66,9 @@ class PresetRun:
     def settings(self) -> FabricationSettings:
         """As ``design`` gets them."""
         making = self.making
-        chosen = {"construction": making.construction, "width_mm": making.width_mm}
         if making == usual_making(self.material, making.k):
-            chosen = {}
+            return new_settings({"material": self.material.key})
+        chosen = {"construction": making.construction, "width_mm": making.width_mm}
         return new_settings({"material": self.material.key, **chosen})
 
     @property
@@ -355,8 +355,8 @@ def judged_preset(run: PresetRun) -> PresetSheet:
     except KirigamiError as error:
         return PresetSheet(*named, Level.FAILS.value, *made, (error.code,), best.sheet.grid)
     codes = tuple(problem.code for problem in found.problems)
-    figures = {} if found.as_cut is None else _figures(found.as_cut)
-    return PresetSheet(*named, found.level.value, *made, codes, best.sheet.grid, **figures)
+    sheet = PresetSheet(*named, found.level.value, *made, codes, best.sheet.grid)
+    return sheet if found.as_cut is None else _with_figures(sheet, found.as_cut)
 
 
 def _judged(best: Candidate, settings: FabricationSettings, target: Outline) -> Verdict:
@@ -365,13 +365,14 @@ def _judged(best: Candidate, settings: FabricationSettings, target: Outline) -> 
     return assess(best, settings, target).verdict
 
 
-def _figures(as_cut: AsCut) -> dict[str, float | str]:
+def _with_figures(sheet: PresetSheet, as_cut: AsCut) -> PresetSheet:
     judged = as_cut.survival
-    return {
-        "jam_deg": math.degrees(as_cut.jam_phi),
-        "strain": judged.strain,
-        "strain_limit": judged.limit,
-        "figure": judged.figure.value,
-        "iou": math.nan if as_cut.ideal_iou is None else as_cut.ideal_iou,
-        "iou_as_cut": math.nan if as_cut.iou is None else as_cut.iou,
-    }
+    return replace(
+        sheet,
+        jam_deg=math.degrees(as_cut.jam_phi),
+        strain=judged.strain,
+        strain_limit=judged.limit,
+        figure=judged.figure.value,
+        iou=math.nan if as_cut.ideal_iou is None else as_cut.ideal_iou,
+        iou_as_cut=math.nan if as_cut.iou is None else as_cut.iou,
+    )
