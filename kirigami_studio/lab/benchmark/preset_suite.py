@@ -1,4 +1,4 @@
-"""Shapes in every bundled material, as ``design --material`` makes them, and in other constructions where it must."""
+"""Shapes in every bundled material, as ``design --material`` makes them and otherwise."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ Report = Callable[[int, int], None]
 
 @dataclass(frozen=True, slots=True)
 class Making:
-    """A construction of a material, the width of its flat sheet, and of how many designs the best is taken."""
+    """A construction, the width of the flat sheet, and the number of designs to choose from."""
 
     construction: Construction
     width_mm: float
@@ -180,7 +180,7 @@ class PresetFigures:
 
     @property
     def ok(self) -> bool:
-        """Whether every sheet works or was warned of, and all needed shapes are ready in some construction."""
+        """Whether all sheets work or were warned of, and no needed shape is a hole."""
         return not self.holes and all(sheet.works or sheet.material in self.notes for sheet in self.sheets)
 
     @property
@@ -190,14 +190,14 @@ class PresetFigures:
         return tuple(one for one in self.sheets if one.shape in NEEDED and (one.material, one.shape) not in made)
 
     def sentences(self) -> list[str]:
-        """The table, one row a material, in Markdown; sentences before a run; what is ready in no construction."""
+        """The table in Markdown, sentences before a run, and the holes."""
         said = [f"{key}: {note}" for key, note in self.notes.items()]
         holes = [f"not ready: {sheet.shape} in {sheet.material}: {', '.join(sheet.codes)}" for sheet in self.holes]
         return [*self.table, *said, *holes]
 
     @property
     def table(self) -> list[str]:
-        """One row a material, in Markdown; a cell has the first construction that is ready beside the usual one."""
+        """One row a material, in Markdown; cells end with the first construction that is ready."""
         shapes = list(dict.fromkeys(sheet.shape for sheet in self.sheets))
         rows: dict[str, dict[str, PresetSheet]] = {}
         for sheet in self.sheets:
@@ -259,7 +259,7 @@ def measure_presets(
     into: str | None = None,
     report: Report = lambda done, total: None,
 ) -> PresetFigures:
-    """Design every shape in every material as usual, and otherwise where that is not ready; judge the best of each.
+    """Design every shape in every material as usual, and otherwise where that is not ready.
 
     Parameters
     ----------
