@@ -63,6 +63,7 @@ from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, is_pinned, with_choices
 from kirigami_studio.studio.as_cut import AsCut, simulated
 from kirigami_studio.studio.cutting import check_connectors
+from kirigami_studio.studio.file_kinds import FILE_KINDS
 from kirigami_studio.studio.making import (
     CutRequest,
     MadePieces,
@@ -81,7 +82,7 @@ from kirigami_studio.studio.verdict import Level, Verdict, judge_assembled
 #: Files that hold a project, whose chosen design is meant.
 PROJECTS = (SUFFIX, *CUT_FILES)
 #: Files that need no planned cuts.
-PICTURES = (".png", ".gif", ".html")
+PICTURES = tuple(kind.extension for kind in FILE_KINDS if not kind.cuts)
 #: Colours of the levels of a verdict, on white and on black.
 LEVELS = {Level.READY: "#30a46c", Level.CARE: "#d9730d", Level.FAILS: "#e5484d"}
 
@@ -482,7 +483,8 @@ class Design:
         path : path
             ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for designs in layers in a folder of this name;
             ``.stl``, ``.3mf`` or ``.obj``: solids, on printed pins in a folder of this name; ``.png``: the closed
-            sheet; ``.gif``: its motion; ``.html``: a page to share.
+            sheet; ``.gif``: its motion; ``.html``: a page to share; ``.fold``,
+            ``.xml`` (MuJoCo), ``.csv``: its parts and hinges.
 
         Returns
         -------
@@ -528,7 +530,7 @@ class Design:
         rows, columns = self.grid
         figures = [f"IoU {self.iou:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
         details = "  ·  ".join(figures if self.feasible else [*figures, "not feasible"])
-        return states_picture(self.posed, self.target.points, f"{self.name}  ·  {self.target.name}", details)
+        return states_picture(self.posed, self.target.rings, f"{self.name}  ·  {self.target.name}", details)
 
 
 def score(ratios: SheetLike, target: TargetLike, *, phi: float = 0.0) -> Score:

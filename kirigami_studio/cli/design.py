@@ -130,7 +130,7 @@ def design(arguments: argparse.Namespace) -> int:
     def one_from_cluster(name: str, design: DesignOutcome) -> None:
         tell(name, design, design.save(folder_for(name)) if design.files else {})
 
-    inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments))
+    inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments), arguments.fill_holes)
     if arguments.scheduler:
         return for_each(
             _from_cluster(inputs, job_for, Workers(scheduler=arguments.scheduler)),
@@ -290,7 +290,8 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
         "candidates": entries,
         "best": entries[0],
         "construction": construction.value,
-        "target_outline": [result.request.target.points.tolist()],
+        "target_outline": [ring.tolist() for ring in result.request.target.rings],
+        "target_holes": len(result.request.target.holes),
         "seconds": result.seconds,
         "forward_evaluations": result.forward_evaluations,
     }

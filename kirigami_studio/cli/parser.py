@@ -101,6 +101,9 @@ PARTS = (
     option("--join", choices=[join.value for join in Join], default=None,
            help="how parts become one outline: union of what touches, bridges between nearest places, convex hull, or "
                 "a tight hull (default union; all parts with the others)"),
+    option("--fill-holes", action=argparse.BooleanOptionalAction, default=None,
+           help="fill the holes of the target, or keep all of them (default: holes are kept, but for those around "
+                "which only a line would stay)"),
     option("--bridge", type=positive, default=None, metavar="WIDTH",
            help="width of bridges in the file's unit (default 4 %% of the size); alone, as --join bridge"),
     option("--stroke-outline", type=positive, nargs="?", const=0, default=None, metavar="WIDTH",
@@ -200,7 +203,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("export", "write a project as a cut file or picture", "fabrication:export", (
         option("project", help="a .kiri project"),
         option("--out", required=True,
-               help="file to write (.dxf .svg .pdf .lbrn2 .png .gif .html .stl .3mf .obj); with --all, a folder"),
+               help="file to write (.dxf .svg .pdf .lbrn2 .png .gif .html .stl .3mf .obj .fold .xml .csv); with "
+                    "--all, a folder"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
         option("--as-cut", action="store_true",
                help="pictures (.png .gif, and those of --all) show the sheet on the connectors of its planned cuts, as "

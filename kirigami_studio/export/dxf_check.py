@@ -47,7 +47,7 @@ from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.foundation.plain_text import plain_line
 
 #: Kinds of file that an export has beside cut files.
-NO_CUT_FILES = frozenset({".pdf", ".png", ".gif", ".html", ".json", ".kiri"})
+NO_CUT_FILES = frozenset({".pdf", ".png", ".gif", ".html", ".json", ".kiri", ".fold", ".xml", ".csv"})
 #: A tab may differ from the width that the file promises by this much (mm).
 TAB_TOLERANCE_MM = 1e-3
 #: Cuts may end this far (mm) beyond the outline: edge cuts run over it on purpose.

@@ -429,7 +429,7 @@ def _copies_findings(
 
 def _meant(lines: Sequence[LineString], plan: CutPlan) -> set[Pair]:
     """Which of the file's cuts meet on purpose, by number; none where the file's cuts are not those of the plan."""
-    paths = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
+    paths = plan.inner
     return joined_pairs(plan, paths, lines) if len(paths) == len(lines) else set()
 
 

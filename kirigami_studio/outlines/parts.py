@@ -9,11 +9,13 @@ One rule says which of them are the silhouette that is seen, for all kinds of fi
   filled shapes or show more than what they enclose; thin lines count by what they enclose.
 - Of what is painted and of what thin lines enclose, the silhouette with the larger area is taken, whatever lies inside.
 - Thin lines that would surround all of it, were they closed, are an open contour, and nothing is taken.
+- Holes are what filled shapes and broad lines leave unpainted, and thin contours right within another one of the same
+  layer, colour and width; contours of others are engraved.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Literal
@@ -53,6 +55,9 @@ SHOWS_MORE, ROUND_FILLED = 0.02, 0.5
 LARGER = 1e-6
 #: A rectangle of lines whose edges are nearer to the paper's than this share of the paper is its frame.
 FRAME = 0.05
+#: More contours than this within another one are a drawing on it.  Two contours whose boxes differ by less than this
+#: share of the size are one that is drawn twice.
+MOST_BORES, DRAWN_TWICE = 40, 1e-3
 #: Cosine of the turn of a line below which it has a corner.
 STRAIGHT = 0.996
 #: Vertices of a quarter circle at the ends and corners of strokes, and deviation of stroked lines, share of the size.
@@ -361,10 +366,16 @@ def _usual(source: SourceParts) -> UsualChoice:
         number = max(lines, key=lambda part: part.worth).number
         return UsualChoice((number,), (number,), False, False, open_at or opening(_all_lines(lines), size), len(lines))
     silhouette = Polygon(enclosed(united([kinds[part.number] for part in taken], size))[0])
-    numbers = tuple(part.number for part in _outer(taken, kinds))
+    outer = _outer(taken, kinds)
     others = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
     considered = tuple(number for number in kinds if takes_rings or not _is_letter_apart(source, number, taken))
     closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
+    bored = _bored(taken, {_pen(part) for part in outer}) if takes_rings else []
+    numbers = tuple(part.number for part in taken if part in outer or part in bored)
+    if takes_rings:
+        bores = [ring[part.number] for part in bored]
+    else:
+        bores = bores_of_pens([part for part in lines if part.number in considered], kinds, size)
     plain = (
         open_at is None
         and bool(closed)
@@ -383,8 +394,55 @@ def _usual(source: SourceParts) -> UsualChoice:
         sum(number in ring for number in ring if number not in numbers) if takes_rings else 0,
         0 if takes_rings else len(ring) + sum(not part.is_closed for part in thin),
         any(part not in taken and _outside(part.region, silhouette) > 0.0 for part in letters),
-        united([kinds[number] for number in considered], size),
+        united([kinds[number] for number in considered], size).difference(shapely.union_all(bores)),
     )
+
+
+def _pen(part: Part) -> tuple[str, str, float]:
+    """What contours of one kind have in common."""
+    return part.layer, part.colour, part.pen.width
+
+
+def _bored(parts: Sequence[Part], pens: Collection[tuple[str, str, float]]) -> list[Part]:
+    """Contours that are holes: those within others of one of some pens, unless there are too many."""
+    found = [part for pen in pens for part in inner_contours([part for part in parts if _pen(part) == pen])]
+    return found if len(found) <= MOST_BORES else []
+
+
+def inner_contours(parts: Sequence[Part]) -> list[Part]:
+    """The contours of lines that lie right within an outer one, all around apart from it."""
+    shells = [Polygon(shell(part.region)) for part in parts]
+    if len(shells) < 2:
+        return []
+    boxes = shapely.bounds(shells)
+    far = DRAWN_TWICE * float(np.max(boxes[:, 2:] - boxes[:, :2]))
+    outer, inner = shapely.STRtree(shells).query(shells, predicate="contains_properly")
+    depth: dict[int, list[int]] = {}
+    for around, index in zip(outer.tolist(), inner.tolist(), strict=True):
+        of_shell = depth.setdefault(index, [])
+        if all(np.max(np.abs(boxes[around] - boxes[other])) > far for other in (index, *of_shell)):
+            of_shell.append(around)
+    return [parts[index] for index, around in sorted(depth.items()) if len(around) == 1]
+
+
+def bores_of_pens(lines: Sequence[Part], regions: Mapping[int, BaseGeometry], size: float) -> list[BaseGeometry]:
+    """What closed lines leave open as they are painted, where nothing else lies within.
+
+    Parameters
+    ----------
+    regions : mapping of int to shapely geometry, source units
+        By the parts' numbers, everything that is taken.
+    size : float, source units
+        Of the drawing.
+    """
+    found: list[BaseGeometry] = []
+    for part in lines:
+        if part.is_closed and part.pen.width > 0.0:
+            pen = replace(part, region=Polygon()).seen(size, with_lines=True)
+            hole = part.region.difference(pen)
+            others = (one for number, one in regions.items() if number != part.number)
+            found += [] if any(one.intersection(hole).area > 0.0 for one in others) else [hole]
+    return found
 
 
 def _is_letter_apart(source: SourceParts, number: int, taken: Sequence[Part]) -> bool:

@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import shapely
 from PIL import Image, ImageOps, UnidentifiedImageError
 from scipy import ndimage
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
@@ -21,6 +23,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.background import middle_of, opacity_level, separated
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, numbered, parts_of_region
+from kirigami_studio.outlines.pieces import has_seen_holes, rings_of
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.trace import LEAST_PIXELS, trace
 
@@ -111,9 +114,16 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
     with decoding(path, "source.image_damaged"):
         levels = _levels(content)
         ink = _ink(levels, threshold)
-        ring, notes = trace(ink)
-        outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=(*levels.notes, *notes), unit="px")
-        return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
+        piece, notes = trace(ink)
+        outline = _outline(piece, path.stem, (*levels.notes, *notes), levels.reduction, levels.is_plain)
+        return _in_picture(outline, (rings_of(piece)[0] + 0.5) * levels.reduction, levels)
+
+
+def _outline(piece: Polygon, name: str, notes: tuple[str, ...], reduction: int, is_plain: bool) -> Outline:
+    """The outline of a traced piece, pixels; its holes are open where it is plain that they are some."""
+    ring, holes = rings_of(piece)
+    found = Outline.from_points(ring * reduction, name, notes, unit="px", holes=[hole * reduction for hole in holes])
+    return found if is_plain and has_seen_holes(piece) else found.filled
 
 
 def image_parts(path: str | Path, threshold: float | None = None, in_colour: bool = True) -> SourceParts:
@@ -165,14 +175,19 @@ def _regions(ink: FloatArray, reduction: int, layer: str, colour: str) -> tuple[
         window = (slice(top, rows.stop + MARGIN), slice(left, columns.stop + MARGIN))
         field, own = ink[window], labels[window] == index + 1
         try:
-            ring, _ = trace(np.where(own, field, np.where(field > 0, -field, field)))
+            piece, _ = trace(np.where(own, field, np.where(field > 0, -field, field)))
         except TargetError:
             continue  # thinner than a pixel
         below = ink.shape[0] - window[0].start - field.shape[0]
-        region = Polygon((ring + np.array([left, below])) * reduction).buffer(0)
+        region = in_pixels(piece, (left, below), reduction)
         like = Part(0, "", layer, colour, DrawnPartKind.FILLED, Polygon())
         parts += parts_of_region(region, like)
     return parts, count - len(order)
+
+
+def in_pixels(piece: Polygon, shift: tuple[float, float], reduction: int) -> BaseGeometry:
+    """A traced piece, moved and enlarged to source pixels."""
+    return shapely.transform(piece, lambda points: (points + shift) * reduction).buffer(0)
 
 
 def _colours(content: bytes) -> list[tuple[str, FloatArray, int]]:
@@ -264,8 +279,8 @@ def outline_of_mask(mask: BoolArray, name: str) -> Outline:
         raise TargetError("mask.wrong_shape", shape=mask.shape)
     if not mask.any():
         raise TargetError("mask.empty")
-    ring, notes = trace(np.where(mask, 0.5, -0.5))
-    return Outline.from_points(ring, name=name, notes=notes, unit="px")
+    piece, notes = trace(np.where(mask, 0.5, -0.5))
+    return _outline(piece, name, notes, 1, True)
 
 
 def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels: int | None = None) -> Image.Image:

@@ -203,6 +203,7 @@ def outline_start(outline: Outline) -> StartShape:
     SheetError
         It is too long, or too much of its hull is missing; the sentence says where the deepest hollow is.
     """
+    outline = outline.filled
     length = math.exp(Proportions.of(outline).longest)
     if length > LONGEST * (1.0 + ROUNDING):
         raise SheetError("start.too_long", name=outline.name, length=length, longest=LONGEST)
@@ -233,7 +234,7 @@ def check_hollows(outline: Outline) -> None:
 
 def hollows(outline: Outline) -> tuple[FloatArray, ...]:
     """What is missing to a convex shape, (P, 2) each; nothing where so little is missing that it will be filled."""
-    shape = outline.polygon
+    shape = outline.filled.polygon
     hull = shape.convex_hull
     if hull.area <= 1.0 + FILLED:
         return ()

@@ -39,7 +39,7 @@ class TurnBack:
 
 def turn_back(outline: Outline) -> TurnBack:
     """The largest turn to the right between two edges of an outline, the later one counter-clockwise from the first."""
-    points = shapely.get_coordinates(outline.polygon.simplify(COARSENESS))[:-1]
+    points = shapely.get_coordinates(shapely.Polygon(outline.points).simplify(COARSENESS))[:-1]
     edges = np.roll(points, -1, axis=0) - points
     turns = np.arctan2(
         edges[:, 0] * np.roll(edges[:, 1], -1) - edges[:, 1] * np.roll(edges[:, 0], -1),

@@ -285,7 +285,7 @@ def refitted(
     with one_blas_thread():
         fit = polish(
             start,
-            target,
+            target.filled,
             score.phi,
             REFIT_STEPS,
             preference,

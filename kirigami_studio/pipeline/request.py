@@ -186,6 +186,16 @@ class Request(DesignChoices):
         return max(self.least_panel, self._in_cells(self.least_feature_mm))
 
     @property
+    def silhouette(self) -> Outline:
+        """The target with its holes filled, which whole sheets are fitted to; holes are cut out of them."""
+        return self.target.filled
+
+    @property
+    def trims(self) -> bool:
+        """Whether its best designs are trimmed: where that is asked for, and where the target has holes."""
+        return self.trim or bool(self.target.holes)
+
+    @property
     def pinned(self) -> bool:
         """Whether its sheets have pins."""
         return self.least_gap_mm > 0.0
@@ -286,7 +296,7 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
         known["least_panel"] = f"{request.kept_size:g}"
     if request.least_gap:
         known["least_gap"] = f"{request.least_gap:g}"
-    if request.trim:
+    if request.trims:
         known["trim_keep"] = f"{request.keep:g}"
     if request.search:
         known["search"] = str(request.search)

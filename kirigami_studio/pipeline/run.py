@@ -153,7 +153,7 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     if request.polish >= 2 * FIRST_ROUND:
         yield from work.finish()
     yield from work.cover()
-    if request.trim:
+    if request.trims:
         yield from work.trim()
     candidates = work.ranking.ranked(work.found)
     yield Finished(Result(request, candidates, work.evaluations, watch.seconds, work.cut_short))
@@ -225,8 +225,8 @@ def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
     grid, seed, steps, phi = request.chosen_grid, request.seed, request.steps, request.phi
     count = request.k - len(fits_from_uniform(request))
     if request.near is not None:
-        near = Near(request.near.field, rotation_of_target(request.near, request.target, phi), request.nearness)
-        fields = sample_fields(model, request.target, grid, count, seed, steps, phi, near=near)
+        near = Near(request.near.field, rotation_of_target(request.near, request.silhouette, phi), request.nearness)
+        fields = sample_fields(model, request.silhouette, grid, count, seed, steps, phi, near=near)
         return tuple(on_sheet(request, field) for field in fields)
     # The model knows no other start than the rectangle, and where mouths of that are.
     draw = (
@@ -239,7 +239,7 @@ def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
         target = fit_target(request, pose.symmetry)
         designs += draw(model, target, grid, share, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
     if len(designs) < count:
-        designs += draw(model, request.target, grid, count - len(designs), seed, steps, phi)
+        designs += draw(model, request.silhouette, grid, count - len(designs), seed, steps, phi)
     return tuple(on_sheet(request, design) for design in designs)
 
 
@@ -250,12 +250,12 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     if not request.fitted_starts:
         return []
     grid, hands = request.chosen_grid, request.fit_options.hands
-    angles = first_angles(request.target, grid, 1, request.symmetry, request.start, pinned=request.pinned)
+    angles = first_angles(request.silhouette, grid, 1, request.symmetry, request.start, pinned=request.pinned)
     if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         angles = [one for one in angles if one[1] is not None] or angles
     ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way, int]]] = {}
     for symmetry in dict.fromkeys(symmetry for _, symmetry in angles):
-        suited = Way.suited_to(request.target, symmetry)
+        suited = Way.suited_to(request.silhouette, symmetry)
         poses = [angle for angle, kept in angles if kept is symmetry]
         # Another pose gives more than another way.
         ways[symmetry] = [(angle, symmetry, way, hand) for way in suited for angle in poses for hand in hands]
@@ -268,7 +268,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
 def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, int]]:
     """Symmetries that ``count`` samples keep, and how many of them keep each."""
     grid, setting, start = request.chosen_grid, request.symmetry, request.start
-    poses = shared_symmetries(request.target, grid, setting, start, pinned=request.pinned)
+    poses = shared_symmetries(request.silhouette, grid, setting, start, pinned=request.pinned)
     poses = poses[:MOST_SYMMETRIES]
     together = count if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN) and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
@@ -465,10 +465,10 @@ def needs_cover(request: Request, found: Sequence[Candidate]) -> bool:
     """Whether designs that cover the target may show more of it than the closed ones that were found."""
     if not request.may_cover:
         return False
-    if no_closed_sheet_shows(request.target, request.start):
+    if no_closed_sheet_shows(request.silhouette, request.start):
         return True
     most = max((one.score.iou_exact for one in found if one.score.feasible), default=0.0)
-    return most < COVERED_BELOW and not request.trim
+    return most < COVERED_BELOW and not request.trims
 
 
 @dataclass(frozen=True, slots=True)

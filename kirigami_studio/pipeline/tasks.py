@@ -144,10 +144,10 @@ class TrialTask:
         free, start = request.fit_options.free_rim, request.start
         with one_blas_thread():
             fit = fit_by_stages(
-                request.target, self.grid, request.phi, self.angle, self.phases, free, self.symmetry, start
+                request.silhouette, self.grid, request.phi, self.angle, self.phases, free, self.symmetry, start
             )
         (found,) = scored(request, [fit.sheet], 0, Origin.GUIDED, fitted=True)
-        match = exact_iou(fit.pose.apply(deploy(fit.sheet).outline(request.phi)), request.target)
+        match = exact_iou(fit.pose.apply(deploy(fit.sheet).outline(request.phi)), request.silhouette)
         return TaskResult(replace(found, score=replace(found.score, iou_exact=match)), fit.evaluations + 1)
 
 
@@ -163,7 +163,7 @@ class SearchTask:
         ranking = Ranking.of(request)
         with one_blas_thread():
             fits = fit_shape(
-                request.target,
+                request.silhouette,
                 request.chosen_grid,
                 request.phi,
                 self.starts,
@@ -212,10 +212,10 @@ class CoverTask:
 
 
 def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
-    """What a fit is to match: the target, or the symmetric shape that it is meant to be, where that is asked for."""
+    """Return the shape to match: the target, holes filled, or the symmetric one it is meant to be, where asked for."""
     if symmetry is None or request.symmetry not in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
-        return request.target
-    return _meant(request.target, request.chosen_grid, request.start, request.symmetry, symmetry, request.pinned)
+        return request.silhouette
+    return _meant(request.silhouette, request.chosen_grid, request.start, request.symmetry, symmetry, request.pinned)
 
 
 @lru_cache(maxsize=16)

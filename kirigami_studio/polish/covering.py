@@ -113,11 +113,11 @@ def fit_cover(
     sheet = Sheet.of(design)
     outline = deploy(sheet).outline(phi)
     pose = pose or align(outline, target.points)
-    wanted, place, trimmed = target, Similarity(), _trimmed
-    filled = notches_filled(target, EASY_TURN) if notched else notches_filled(target)
+    wanted, place, trimmed = target.filled, Similarity(), _trimmed
+    filled = notches_filled(target.filled, EASY_TURN) if notched else notches_filled(target.filled)
     if filled is not None:
         laid = align(outline, filled.outline.points)
-        if notched or exact_iou(laid.apply(outline), filled.outline) > exact_iou(pose.apply(outline), target):
+        if notched or exact_iou(laid.apply(outline), filled.outline) > exact_iou(pose.apply(outline), target.filled):
             wanted, place, trimmed = filled.outline, filled.frame, _trimmed_deep
             pose = place.compose(laid)
     first = Fit(sheet, pose, 0.0, 0, 0)

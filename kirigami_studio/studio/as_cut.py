@@ -17,7 +17,7 @@ import shapely
 
 from kirigami_studio.assembly.backed import BackedSheet
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.siou import siou_of_many
+from kirigami_studio.evaluate.siou import iou_of_area
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.fabricate.centres import bending_lengths, void_hinges
 from kirigami_studio.fabricate.connectors import hinge_widths
@@ -45,8 +45,8 @@ from kirigami_studio.mechanics.closing import (
     Closing,
     carried_on,
     closing_steps,
+    covered_area,
     ideal_motion,
-    silhouette,
 )
 from kirigami_studio.mechanics.connectors import (
     ElasticSheet,
@@ -577,8 +577,8 @@ def overlap(
     motions = [carried_on(found, deployment, width_mm, reached), ideal_motion(deployment, network, width_mm, phi)]
     if forced:
         motions.append(carried_on(found, deployment, width_mm, end))
-    rings = [silhouette(deployment, network, width_mm, motion) for motion in motions]
+    areas = [covered_area(deployment, network, width_mm, motion) for motion in motions]
     if design is not None and design is not deployment:
-        rings[1] = design.outline(phi)
-    as_cut, ideal, *shut = (siou_of_many([ring], target)[0].iou_exact for ring in rings)
+        areas[1] = shapely.Polygon(design.outline(phi))
+    as_cut, ideal, *shut = (iou_of_area(area, target) for area in areas)
     return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal)

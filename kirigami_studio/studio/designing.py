@@ -228,7 +228,7 @@ def run_design(
 
 def why_untrimmed(result: Result) -> Note | None:
     """Why no design of a run was trimmed as asked for; None where one is."""
-    if not result.request.trim or any(one.trim is not None for one in result.candidates):
+    if not result.request.trims or any(one.trim is not None for one in result.candidates):
         return None
     return Note("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed", {})
 
@@ -257,6 +257,7 @@ def why_covered(candidates: Sequence[Candidate], target: Outline | None, start: 
         return None
     closed, cover = best[Family.CLOSED], best[Family.COVER]
     figures = {"closed": 100.0 * closed.match, "cover": 100.0 * cover.match, "given_up": 100.0 * cover.given_up}
+    target = target.filled
     back = turn_back(target)
     if back.angle >= TURNS_BACK:
         low, high = target.points.min(axis=0), target.points.max(axis=0)
@@ -331,7 +332,7 @@ def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: floa
 
     least = least_panel_mm * width_in_cells(request.chosen_grid, request.start) / cut.width_mm
     request = replace(request, least_panel=least)
-    if not request.trim and not request.may_cover:
+    if not request.trims and not request.may_cover:
         return request
     # How deep material has to stay at the hinges of a trimmed sheet so that its connectors hold.
     cut = hinge_layer(cut)
@@ -339,7 +340,7 @@ def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: floa
     try:
         return replace(request, keep=keep_for_connectors(request.uniform, material_for(cut), *widths))
     except FabricationError:
-        if request.trim:
+        if request.trims:
             raise
         return replace(request, covers=False)
 

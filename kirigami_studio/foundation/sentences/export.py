@@ -184,6 +184,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The GIF did not read back as planned: {found} frames instead of {planned}, or another size. Nothing was "
         "written. Please report it."
     ),
+    "linkage.not_as_written": mark("{name} did not read back as it was written. Write it again, or to another place."),
+    "linkage.apart": mark("Only {together} of {parts} parts hang together by hinges. Trim less, then write the model."),
     "page.not_as_written": mark(
         "The page did not read back as planned: {name:.40}. Nothing was written. Please report it."
     ),

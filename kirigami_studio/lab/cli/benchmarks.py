@@ -29,7 +29,7 @@ from kirigami_studio.foundation.errors import ExportError, KirigamiError, UsageE
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.processes import Workers
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.silhouettes import load, names
+from kirigami_studio.outlines.silhouettes import load, solid_names
 from kirigami_studio.outlines.starts import start_shape
 
 if TYPE_CHECKING:
@@ -538,7 +538,7 @@ def pinned(arguments: argparse.Namespace) -> int:
     from kirigami_studio.lab.benchmark.pinned_suite import design_pinned
 
     line = ProgressLine()
-    named = names() if arguments.targets == ["library"] else arguments.targets
+    named = solid_names() if arguments.targets == ["library"] else arguments.targets
     found = design_pinned(
         [target.read() for target in read_targets(list(named))],
         parse_grid_or_auto(arguments.grid),
@@ -560,7 +560,7 @@ def as_cut(arguments: argparse.Namespace) -> int:
     from kirigami_studio.lab.benchmark.as_cut_suite import measure_as_cut
 
     line = ProgressLine()
-    named = names() if arguments.targets == ["library"] else arguments.targets
+    named = solid_names() if arguments.targets == ["library"] else arguments.targets
     outlines = [target.read() for target in read_targets(list(named))]
     figures = measure_as_cut(
         outlines,
@@ -619,7 +619,7 @@ def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
 def _target_sets(arguments: argparse.Namespace, exact: bool) -> dict[str, list[Outline]]:
     """Named lists of targets: those of ``--targets``, or ``--count`` of a split of every family."""
     if arguments.targets == ["library"]:
-        return {"library": [load(name) for name in names()]}
+        return {"library": [load(name) for name in solid_names()]}
     if arguments.targets:
         found = [named.read() for named in read_targets(arguments.targets)]
         if not found:

@@ -87,3 +87,23 @@ def test_that_options_that_make_no_sense_are_refused(words, code, says, capsys, 
     monkeypatch.chdir(logo.parent)
     found, said = refusal(capsys, "score", sheet, *words, "--json")
     assert found == code and says in said
+
+
+def test_that_holes_are_kept_filled_or_opened_as_asked(capsys, tmp_path, sheet) -> None:
+    thick = '<path fill-rule="evenodd" d="M0 0h50v50h-50zM15 15h20v20h-20z"/>'
+    thin = '<path fill-rule="evenodd" d="M0 0h50v50h-50zM2 2h46v46h-46z"/>'
+    found = {}
+    for name, body in (("thick", thick), ("thin", thin)):
+        path = tmp_path / f"{name}.svg"
+        path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{body}</svg>', encoding="utf-8")
+        for option in ((), ("--fill-holes",), ("--no-fill-holes",)):
+            told, said = scored(capsys, sheet, path, *option)
+            found[name, *option] = told["target_holes"], "filled" in said
+    assert found == {
+        ("thick",): (1, False),
+        ("thick", "--fill-holes"): (0, True),
+        ("thick", "--no-fill-holes"): (1, False),
+        ("thin",): (0, True),
+        ("thin", "--fill-holes"): (0, True),
+        ("thin", "--no-fill-holes"): (1, False),
+    }

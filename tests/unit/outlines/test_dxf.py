@@ -141,10 +141,10 @@ def test_that_a_wide_gap_is_named_even_around_a_closed_hole(decoration, dxf) -> 
         read_dxf(dxf(draw))
 
 
-def test_that_inner_contours_and_stray_lines_are_left_out_and_said(dxf, iou) -> None:
+def test_that_engraving_and_stray_lines_are_left_out_and_said(dxf, iou) -> None:
     def draw(space, drawing) -> None:
         square_with_gap(0.0)(space, drawing)
-        space.add_circle((5, 5), 2)
+        space.add_circle((5, 5), 2, dxfattribs={"layer": "ENGRAVE"})
         space.add_line((2, 2), (2.5, 2.5))
         space.add_circle((30, 5), 1)
 
