@@ -20,6 +20,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import (
     GRID,
+    GeometryArray,
     KeptPanels,
     PanelTable,
     all_panels,
@@ -40,13 +41,15 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
 KEEP = 0.15
+#: A hole of which less is open counts as closed.
+MOSTLY_OPEN = 0.5
 #: Between these depths hinges hold and panels can still be trimmed.
 SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
 
 @dataclass(frozen=True, slots=True)
 class Trim:
-    """A trimmed design; two are equal when sheet, angle, pose and depth are, because the rest follows from them."""
+    """A trimmed design; two are equal when sheet, angle, pose, depth and match are: the rest follows from the target."""
 
     sheet: Sheet
     phi: float  #: radians; the angle at which the panels were cut
@@ -56,14 +59,21 @@ class Trim:
     #: tuple of (P, 2) float or None, unit cells; what stays of every panel, row by row, in the compact sheet's frame,
     #: counter-clockwise; None for a whole one, no points for one that was given up.
     kept: tuple[FloatArray | None, ...] = attribute(compare=False, repr=False)
-    iou: float = attribute(compare=False)  #: 0..1; exact IoU of the trimmed silhouette with the target
+    iou: float  #: 0..1; exact IoU of the trimmed silhouette with the target
     untrimmed_iou: float = attribute(compare=False)  #: 0..1; the same of the whole silhouette in the same pose
     removed_share: float = attribute(compare=False)  #: 0..1; removed part of the sheet's area
+    #: 0..1 each; how much of each hole of the target is open.
+    holes_open: tuple[float, ...] = attribute(default=(), compare=False)
 
     @property
     def given_up(self) -> int:
         """Number of panels of which nothing stays."""
         return sum(part is not None and not len(part) for part in self.kept)
+
+    @property
+    def closed_holes(self) -> tuple[int, ...]:
+        """Numbers of the target's holes that stay closed for the most part."""
+        return tuple(number for number, share in enumerate(self.holes_open) if share < MOSTLY_OPEN)
 
 
 def trim(
@@ -97,7 +107,8 @@ def trim(
     silhouette = Polygon(deployment.outline(phi))
     if not silhouette.is_valid:
         raise KirigamiError("trim.crosses_itself")
-    place = Polygon(pose.inverse().apply(target.points))
+    deep = deep or bool(target.holes)
+    place: Polygon = shapely.transform(target.polygon, pose.inverse().apply)
     shared, parts = silhouette.intersection(place).area, _deep_parts if deep else _edge_parts
     cut = parts(deployment, place, phi, keep)
     kept: list[FloatArray | None] = [None] * deployment.topology.panel_nodes[..., 0].size
@@ -116,6 +127,7 @@ def trim(
         iou=float(both / (place.area + silhouette.area - removed - cut.open_area - both)),
         untrimmed_iou=float(shared / (silhouette.area + place.area - shared)),
         removed_share=removed / deployment.area(math.pi),
+        holes_open=tuple(1.0 - covered for covered in cut.covered),
     )
 
 
@@ -130,13 +142,14 @@ class _Parts:
     kept: KeptPanels
     open_area: float = 0.0
     open_shared: float = 0.0
+    covered: tuple[float, ...] = ()  #: 0..1 each; how much of each hole of the target the parts and voids cover
 
 
 def _edge_parts(deployment: Deployment, place: Polygon, phi: float, keep: float) -> _Parts:
     """The panels at the edge cut along the target, all hinges kept."""
     panels = edge_panels(deployment.field.rows, deployment.field.columns)
     corners = deployment.compact[panels.corners]
-    targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
+    targets = _brought_back(deployment, panels, phi, place)
     kept = kept_panels(corners, panels.hinged, targets, keep)
     return _Parts(panels.index, with_pockets(kept, corners, targets, _inside(deployment, panels)))
 
@@ -145,7 +158,7 @@ def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float)
     """All panels cut along the target, those in its notches given up."""
     grid = deployment.field.rows, deployment.field.columns
     panels = all_panels(*grid)
-    targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
+    targets = _brought_back(deployment, panels, phi, place)
     tables = deployment.topology
     voids = polygons(deployment.nodes(phi)[tables.void_nodes].reshape(-1, 4, 2))
     ends = np.where(tables.even_void[..., None], tables.void_nodes[..., [3, 1]], tables.void_nodes[..., [0, 2]])
@@ -153,9 +166,25 @@ def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float)
     symmetry = symmetry_of(deployment.sheet)
     images = None if symmetry is None else symmetry.on(*grid).source[:, : area.size]
     gain = shared - STICKING_OUT * (area - shared)
-    kept, stay = deep_cut(deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images)
+    open_inside = bool(place.interiors)
+    kept, stay = deep_cut(
+        deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images, open_inside
+    )
     left_out = ~stay
-    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()))
+    covered = tuple(
+        _covered(deployment, panels, phi, Polygon(hole), kept, voids[stay.ravel()]) for hole in place.interiors
+    )
+    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()), covered)
+
+
+def _covered(
+    deployment: Deployment, panels: PanelTable, phi: float, hole: Polygon, kept: KeptPanels, voids: GeometryArray
+) -> float:
+    """Share of a hole that kept panels and the voids between them cover."""
+    whole = polygons(deployment.compact[panels.corners])
+    parts = np.where([shape is None for shape in kept.shapes], whole, kept.shapes)
+    common = shapely.area(shapely.intersection(parts, _brought_back(deployment, panels, phi, hole)))
+    return float(common.sum() + shapely.area(shapely.intersection(voids, hole)).sum()) / hole.area
 
 
 def check_keep(keep: float) -> float:
@@ -182,13 +211,17 @@ def _turn(even: BoolArray, phi: float) -> ComplexArray:
     return turn
 
 
-def _brought_back(deployment: Deployment, panels: PanelTable, phi: float, points: FloatArray) -> ComplexArray:
-    """Points (T, 2) of the layout's frame at ``phi``, carried to the compact sheet with each edge panel: (E, T)."""
+def _brought_back(deployment: Deployment, panels: PanelTable, phi: float, place: Polygon) -> GeometryArray:
+    """The target in the layout's frame at ``phi``, carried to the compact sheet with each panel: (E,) Polygon."""
     anchors = panels.corners[:, 0]
     start, end = as_plane(deployment.nodes(phi))[anchors], as_plane(deployment.compact)[anchors]
     back = np.conj(_turn(panels.even, phi))
-    carried: ComplexArray = (as_plane(points) - start[:, None]) * back[:, None] + end[:, None]
-    return carried
+
+    def carried(ring: BaseGeometry) -> FloatArray:
+        points = as_plane(shapely.get_coordinates(ring)[:-1])
+        return as_points((points - start[:, None]) * back[:, None] + end[:, None])
+
+    return polygons(carried(place.exterior), [carried(hole) for hole in place.interiors])
 
 
 def _inside(deployment: Deployment, panels: PanelTable) -> BaseGeometry:

@@ -240,7 +240,7 @@ def _in_cutting_order(sheet: Polygon, plan: CutPlan) -> list[shapely.LinearRing]
     """Slots in the order in which their slits are cut."""
     slots = [ring for ring in sheet.interiors if Polygon(ring).area > DUST_MM2]
     areas = np.array([Polygon(ring) for ring in slots], dtype=object)
-    inner: list[CutPath] = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
+    inner: list[CutPath] = plan.inner
     starts = shapely.points(np.array([path.points[0] for path in inner]).reshape(-1, 2))
     if not len(areas):
         return []

@@ -429,7 +429,7 @@ def _copies_findings(
 
 def _meant(lines: Sequence[LineString], plan: CutPlan) -> set[Pair]:
     """Which of the file's cuts meet on purpose, by number; none where the file's cuts are not those of the plan."""
-    paths = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
+    paths = plan.inner
     return joined_pairs(plan, paths, lines) if len(paths) == len(lines) else set()
 
 
@@ -511,7 +511,8 @@ def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[S
     """Notes on this profile and version."""
     found = [profile.note] if profile.note is not None else []
     if plan.engraving is not None and profile.name_colour is None:
-        found.append(Note.of("profile.name_left_out", name=plan.engraving.text))
+        name = plan.engraving.text
+        found.append(Note.of("profile.name_left_out", name=name) if name else Note.of("profile.marks_left_out"))
     if version == "R12" and path.suffix.lower() != ".svg":
         found.append(Note.of("verify.no_unit_in_r12"))
     if profile.slots:

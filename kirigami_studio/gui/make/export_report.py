@@ -196,7 +196,7 @@ def headline(verification: Verification, judged: Verdict | None) -> str:
     """What is to be expected of the sheet where it is not ready to cut, else of the file."""
     if judged is None or judged.ok or not verification.ok:
         return verdict(verification)
-    return tr("{level}: {text}", level=judged.level.words, text=judged.problems[0].text)
+    return tr("{level}: {text}", level=judged.level_words, text=judged.problems[0].text)
 
 
 def symbol_of(verification: Verification, judged: Verdict | None) -> str:

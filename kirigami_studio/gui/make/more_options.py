@@ -94,9 +94,9 @@ class MoreOptions(QWidget):
         self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm, "clearance_mm": sizes.clearance_mm})
         pinned = construction is Construction.PINNED
         for names, offered in (
-            (("fastener", "held_by", "moved_by"), pinned),
-            (("held_when",), pinned and settings.held_by is not HoldKind.NONE),
-            (("magnet_mm", "magnet_height_mm"), pinned and settings.held_by is HoldKind.MAGNETS),
+            (("fastener", "moved_by"), pinned),
+            (("held_when",), settings.held_by is not HoldKind.NONE),
+            (("magnet_mm", "magnet_height_mm"), settings.held_by is HoldKind.MAGNETS),
             (("pin_mm", "ear_mm", "clearance_mm"), pinned or construction is Construction.PRINTED),
             (("gap_mm", "second_material", "board_cut"), construction is Construction.BACKED),
         ):

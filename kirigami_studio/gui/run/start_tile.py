@@ -18,11 +18,12 @@ from kirigami_studio.gui.widgets.paths import blank, ink, painter_on
 from kirigami_studio.gui.widgets.target_items import paint_start_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
-from kirigami_studio.outlines.starts import RECTANGLE, StartShape, start_shape
+from kirigami_studio.outlines.starts import AUTO, RECTANGLE, StartShape, start_shape
 from kirigami_studio.studio.two_states import size_words, start_outline, start_words
 
 #: Starts that are a click away: name, label, what it means.
 STARTS = (
+    (AUTO, mark("Auto"), mark("A rectangle, or what short fits of the target find better.")),
     (RECTANGLE.name, mark("Rectangle"), mark("As many square cells as the grid has: the paper's sheet.")),
     ("square", mark("Square"), mark("A square, whatever the grid.")),
     ("circle", mark("Circle"), mark("A disk. Its rim is a polygon with corners where cuts meet it.")),

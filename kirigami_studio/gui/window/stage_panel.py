@@ -341,7 +341,7 @@ class StagePanel(Card):
 
     def show_made(self, made: Planned | MadePieces | None) -> None:
         """Draw pieces and tiles of a design whose cuts are planned, and name them in the header."""
-        self.view.show_pieces(made.posed if isinstance(made, MadePieces) else None)
+        self.view.show_pieces(made.on_board if isinstance(made, MadePieces) else None)
         self.view.show_tiles(made.layers if isinstance(made, Planned) else None)
         self.show_title()
 
