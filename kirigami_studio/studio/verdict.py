@@ -89,7 +89,7 @@ HALF_WAY = 0.5
 #: Of a sheet that comes within a few degrees of its angle, or loses hardly any match.
 NEARLY = "as_cut.nearly"
 #: What a close look lets pass: ranking counts the match that is lost.
-BEARABLE = frozenset({NEARLY, "as_cut.loses_match"})
+BEARABLE = frozenset({NEARLY, "as_cut.loses_match", "pinned.target_missed"})
 #: Warnings about a file that are about importing it, not about the sheet.
 ABOUT_IMPORTING = frozenset({"verify.no_unit_in_r12"})
 
@@ -455,7 +455,8 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made, settings)
     gained = made.report.figures.match - candidate.score.iou_exact
-    return CloseLook(None if found.ok else found.problems[0], made.as_cut, gained)
+    refusal = next((problem for problem in found.problems if problem.code not in BEARABLE), None)
+    return CloseLook(refusal, made.as_cut, gained)
 
 
 def refused(error: KirigamiError) -> Verdict:
