@@ -26,6 +26,7 @@ from kirigami_studio.export import registry
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import PANEL
 from kirigami_studio.fabricate.fastener import Fastener
+from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.fabricate.material import Construction, find_material
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.steps import never
@@ -36,7 +37,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for
-from kirigami_studio.studio import assembling
+from kirigami_studio.studio import assembling, verdict
 from kirigami_studio.studio.as_cut import Source, estimate
 from kirigami_studio.studio.checking import checked, checked_together
 from kirigami_studio.studio.making import (
@@ -86,6 +87,17 @@ def test_that_estimate_and_close_look_say_that_pins_close(pinwheel: Document, ma
     assert guess.closes and guess.source is Source.ESTIMATE and guess.strain == 0.0
     look = look_at(candidate, settings, pinwheel.target)
     assert look.refusal is None and look.as_cut is made.made.as_cut
+
+
+def test_that_a_close_look_leaves_pieces_that_miss_their_target_to_the_ranking(
+    pinwheel: Document, made: MadePieces, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (candidate,), settings = pinwheel.candidates, pinwheel.fabrication
+    missed = verdict.Verdict((Problem.warning("pinned.target_missed", lost=1.1, beyond=5.4),))
+    monkeypatch.setattr(verdict, "judge_assembled", lambda *_: missed)
+    look = look_at(candidate, settings, pinwheel.target)
+    assert look.refusal is None
+    assert look.loss == pytest.approx(candidate.score.iou_exact - made.report.figures.match)
 
 
 def test_that_command_line_api_and_window_write_the_same_pieces(
