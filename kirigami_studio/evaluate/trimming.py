@@ -20,12 +20,12 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import (
     GRID,
+    GeometryArray,
     KeptPanels,
     PanelTable,
     all_panels,
     edge_panels,
     kept_panels,
-    GeometryArray,
     polygons,
     with_pockets,
 )
@@ -49,7 +49,7 @@ SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
 @dataclass(frozen=True, slots=True)
 class Trim:
-    """A trimmed design; two are equal when sheet, angle, pose, depth and match are: the rest follows from the target."""
+    """A trimmed design; two are equal when sheet, angle, pose, depth and match are, for then the rest is."""
 
     sheet: Sheet
     phi: float  #: radians; the angle at which the panels were cut

@@ -17,7 +17,7 @@ from kirigami_studio.fabricate.centred import Arranged, StraightSheet, Trimming,
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
-from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
+from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
 from kirigami_studio.fabricate.endings import seats
@@ -68,8 +68,8 @@ WHY_STRAIGHT = {
 class CutPlan:
     """A job for the cutter."""
 
-    #: In the order of cutting: relief holes, holes of the silhouette, slits, edge cuts, outline (one closed path, or as many open ones as there
-    #: are tabs).  Smallest coordinates are 0, y up.
+    #: In the order of cutting: relief holes, slits, edge cuts, holes of the silhouette, outline (one closed path, or as
+    #: many open ones as there are tabs).  Smallest coordinates are 0, y up.
     paths: tuple[CutPath, ...]
     size_mm: tuple[float, float]  #: (width, height); the finished sheet; of a trimmed one, what it was before
     #: connector_mm, kerf_mm, overcut_mm: finished connector width asked for, full cut width, reach of edge cuts beyond

@@ -9,7 +9,7 @@ import shapely
 from shapely.geometry import LineString
 
 from kirigami_studio.fabricate.cut_path import measured_line
-from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan
 
 #: Coordinates are rounded to half of this (mm): what is nearer touches.
 TOUCH_MM = 2e-4

@@ -143,6 +143,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{rows} x {columns}: in short fits on {count} grids, coarser ones matched noticeably less. "
         "Expected match: {percent:.1f} %."
     ),
+    "grid.finer_for_holes": mark(
+        "{rows} x {columns}: finer than the outline needs, so that holes and the walls beside them are no smaller than "
+        "panels allow. Expected match: {percent:.1f} %."
+    ),
     "grid.panels_would_be_too_small": mark(
         "{rows} x {columns}: on a finer grid, panels of a sheet {width_mm:.0f} mm wide would be smaller than "
         "{least_mm:.2g} mm. Expected match: {percent:.1f} %."
@@ -236,6 +240,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "are cut out of it with {count} panel.",
         "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
         "are cut out of it with {count} panels.",
+    ),
+    "rank.holes_cut_out": mark_n(
+        "Match once trimmed: {match:.1f} %. The sheet covers its holes; they are cut out of it with {count} panel.",
+        "Match once trimmed: {match:.1f} %. The sheet covers its holes; they are cut out of it with {count} panels.",
     ),
     "rank.pins_too_near": mark("Pins come as near as {gap_mm:.1f} mm; their ears need {least_mm:.1f} mm."),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),
