@@ -117,7 +117,9 @@ def sheet_strokes(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
     for path in plan.paths:
         flat = profile.flatten and path.bulges is not None
         points, bulges = (np.round(_chords(path, plan), DECIMALS) + 0.0, None) if flat else (path.points, path.bulges)
-        found.append(Stroke(points, path.closed, profile.layer_name(path.layer), profile.sheet_colour(path.layer), bulges))
+        found.append(
+            Stroke(points, path.closed, profile.layer_name(path.layer), profile.sheet_colour(path.layer), bulges)
+        )
     return tuple(found)
 
 
