@@ -482,10 +482,9 @@ def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     if centred:
         narrowest, planned = voids.narrowest_mm, int(np.sum(~plan.hinges.removed))
         # A corner of a hole that is as round as a slot ends looks like one more connector.
-        more = len(voids.connectors) > planned and bool(plan.on_layer(Layer.HOLES))
-        if (
-            len(voids.connectors) != planned and not more
-        ) or narrowest < plan.min_connector_mm - 2.0 * WIDTH_TOLERANCE_MM:
+        most = math.inf if plan.on_layer(Layer.HOLES) else planned
+        lost = not planned <= len(voids.connectors) <= most
+        if lost or narrowest < plan.min_connector_mm - 2.0 * WIDTH_TOLERANCE_MM:
             widths = {"narrowest_mm": narrowest, "planned": planned, "planned_mm": plan.min_connector_mm}
             return [Finding.judged(False, "verify.connectors_lost", connectors=len(voids.connectors), **widths)]
         if narrow := _too_narrow(voids, plan):

@@ -106,6 +106,18 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "trim.crosses_itself": mark(
         "This design crosses itself at the target angle, so it cannot be trimmed. Choose another design."
     ),
+    "trim.hole_too_small": mark_n(
+        "{count} of {total} holes stays closed, for it is smaller than the panels at x = {x:.1f}, y = {y:.1f} mm. "
+        "Choose more rows and columns, or fill it.",
+        "{count} of {total} holes stay closed, for they are smaller than the panels there, as at x = {x:.1f}, "
+        "y = {y:.1f} mm. Choose more rows and columns, or fill them.",
+    ),
+    "trim.hole_holds_sheet": mark_n(
+        "{count} of {total} holes stays closed, for the sheet would fall apart there, near x = {x:.1f}, "
+        "y = {y:.1f} mm. Choose more rows and columns, make it smaller, or fill it.",
+        "{count} of {total} holes stay closed, for the sheet would fall apart there, as near x = {x:.1f}, "
+        "y = {y:.1f} mm. Choose more rows and columns, make them smaller, or fill them.",
+    ),
     "trim.nothing_left": mark("No part of the sheet lies mostly on the target. Lay the sheet over the target first."),
     "trim.keep_out_of_range": mark(
         "The material kept at hinges must be {least:g} to {most:g} cells deep, got {keep!r:.80}."
