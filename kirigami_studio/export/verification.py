@@ -397,8 +397,11 @@ def file_physics(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> 
     outlines, holes = _rims(plan, profile)
     traced = [stroke.travelled(MEASURED_CHORD_MM) for stroke in strokes]
     lines = [LineString(points) for points in traced]
-    inner, rim, openings = lines[: -outlines - holes], traced[-outlines:], traced[-outlines - holes : -outlines]
-    boundary = Polygon(rim[0] if outlines == 1 else joined_ring(rim), openings)
+    inner, rim = lines[: -outlines - holes], traced[-outlines:]
+    openings = [points for points in traced[-outlines - holes : -outlines] if len(points) > 3]
+    outline = Polygon(rim[0] if outlines == 1 else joined_ring(rim))
+    drawn = Polygon(outline.exterior, openings)
+    boundary = drawn if drawn.is_valid else outline  # a file that lost a hole has other cuts in its place
     kerf = 0.0 if profile.slots else plan.kerf_mm
     loops = [Polygon(line) for line, stroke in zip(inner, strokes, strict=False) if stroke.closed]
     sheet: BaseGeometry = boundary.difference(shapely.union_all(loops))

@@ -120,7 +120,7 @@ def read_voids(
         return _voids([])
     rims = [shapely.get_coordinates(line) for line in lines[-outlines:]]
     ring = rims[0] if outlines == 1 else np.concatenate([joined_ring(rims), rims[0][:1]])
-    openings = lines[-outlines - holes : -outlines]
+    openings = [line for line in lines[-outlines - holes : -outlines] if len(line.coords) > 3]
     rim = MultiLineString([LineString(ring), *openings]) if holes else LineString(ring)
     group, tips = _line_tips(inner, [stroke.closed for stroke in strokes[: len(inner)]], Polygon(ring, openings))
     parts: list[list[LineString]] = [[] for _ in range(int(group.max()) + 1)]
