@@ -534,7 +534,7 @@ def starts(arguments: argparse.Namespace) -> int:
 
 
 def holes(arguments: argparse.Namespace) -> int:
-    """Drawn targets with holes, designed and cut; 1 when a hole stays closed or a sheet falls apart."""
+    """Targets with holes, designed and cut; 1 for a hole that is closed or a sheet in pieces."""
     from kirigami_studio.lab.benchmark.holes_suite import design_holes, hole_figures, hole_sentences
 
     line = ProgressLine()
