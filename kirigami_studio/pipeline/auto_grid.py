@@ -41,7 +41,7 @@ COARSEST, FINEST = 6, 16
 #: The same of pinned sheets, whose pieces somebody has to put together.
 COARSEST_PINNED, FINEST_PINNED = 3, 10
 #: Distances between pins (unit cells) that sheets have room for.
-MOST_GAP = 0.42
+MOST_GAP = 0.375
 #: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
 FEWEST_VOIDS, FEWEST_PINNED = 99, 49
 #: The coarsest grid with at least this predicted match is taken.
@@ -139,7 +139,7 @@ class ShapeFigures:
     @classmethod
     def of(cls, target: Outline) -> ShapeFigures:
         """Measure a target."""
-        points = shapely.get_coordinates(target.polygon.simplify(COARSENESS))[:-1]
+        points = shapely.get_coordinates(shapely.Polygon(target.points).simplify(COARSENESS))[:-1]
         after = np.roll(points, -1, axis=0) - points
         before = np.roll(after, 1, axis=0)
         turns = np.arctan2(

@@ -134,7 +134,7 @@ def _settings_json(settings: DesignSettings, seconds: list[SecondTarget]) -> dic
     entries = {"grid": list(settings.grid), **settings_json(settings)}
     if settings.second is not None:
         entries["second"] = {"number": seconds.index(settings.second)}
-    if not start.is_plain:
+    if not start.is_plain or start.is_auto:
         outline = None if start.outline is None else _outline_json(start.outline)
         softer = {} if start.weight == USUAL_WEIGHT else {"weight": start.weight}
         entries["start"] = {"name": start.name, "aspect": start.aspect, "outline": outline, **softer}
@@ -205,7 +205,11 @@ def _outline_json(outline: Outline) -> dict[str, object]:
         "place": None if outline.place is None else list(outline.place),
         "nodes": None if outline.nodes is None else _nodes_json(outline.nodes),
         # Left out where there are none: files stay as they were before holes.
-        **({"holes": [hole.tolist() for hole in outline.holes]} if outline.holes else {}),
+        **{
+            key: [hole.tolist() for hole in getattr(outline, key)]
+            for key in ("holes", "filled_holes")
+            if getattr(outline, key)
+        },
     }
 
 
@@ -219,7 +223,11 @@ def _outline(record: Record) -> Outline:
         unit=record.text("unit"),
         place=record.pair("place") if record.holds("place") else None,
         nodes=_nodes(record.record("nodes")) if record.holds("nodes") else None,
-        holes=tuple(_table(hole, "target.holes") for hole in record.list("holes")) if record.holds("holes") else (),
+        **{
+            key: tuple(_table(hole, f"target.{key}") for hole in record.list(key))
+            for key in ("holes", "filled_holes")
+            if record.holds(key)
+        },
     )
 
 

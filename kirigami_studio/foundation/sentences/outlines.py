@@ -239,7 +239,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "combine.no_change": mark(
         "The shape changes nothing: it lies inside the target. Draw it across the target's edge."
     ),
-    "combine.hole": mark("The shape would cut a hole, which a sheet cannot show. Draw it across the target's edge."),
     "combine.half_empty": mark("That half of the target is empty. Choose the other one."),
     "mirror.nothing_on_side": mark("Nothing of the drawing is on the side of the axis that is mirrored."),
     "mirror.images_apart": mark("The shape and its mirror image do not touch. Draw it across the dashed axis."),
