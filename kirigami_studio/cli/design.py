@@ -15,12 +15,14 @@ from kirigami_studio.cli.fabrication import material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
 from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto, setting_values
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import Cancelled, ExportError, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.processes import Workers, ordered_results_of
@@ -29,6 +31,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import lost_to_chords, start_error, start_match
 from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.pieces import largest_piece, rings_of
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
@@ -316,13 +319,13 @@ def candidates_json(result: Result, construction: Construction) -> list[dict[str
     ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
-        candidate_json(candidate, ranking, result.as_cut.get(candidate))
+        candidate_json(candidate, result.request.target, ranking, result.as_cut.get(candidate))
         | {"rank_reason": reason.text, "group": group, **kind}
         for candidate, reason, group in zip(candidates, reasons, groups, strict=True)
     ]
 
 
-def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None) -> dict[str, object]:
+def candidate_json(candidate: Candidate, target: Outline, ranking: Ranking, as_cut: object = None) -> dict[str, object]:
     """One entry of ``candidates``: a sheet file with score and provenance.
 
     ``as_cut`` is how it does as cut, null where its cuts cannot be planned.
@@ -341,7 +344,7 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
         "at_limit": even.at_limit,
         "cuttable": ranking.cuttable(candidate),
         "as_cut": as_cut.to_json() if isinstance(as_cut, AsCut) else None,
-        "outline": [candidate.score.transform.apply(deploy(candidate.sheet).outline(candidate.score.phi)).tolist()],
+        "outline": [ring.tolist() for ring in _shown_rings(candidate, target)],
     }
     if candidate.second is not None:
         match = candidate.second.match
@@ -350,6 +353,19 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
         cut = sheet_json(candidate.trim.sheet)
         entry |= {"trimmed_iou": candidate.trim.iou, "trimmed_ratio": cut["ratio"], "trimmed_rim": cut["rim"]}
     return entry
+
+
+def _shown_rings(candidate: Candidate, target: Outline) -> list[FloatArray]:
+    """What is seen of a candidate at its angle, in the frame of the target: the outer ring, then holes.
+
+    Of a target with holes it is the trimmed sheet, which alone has some, of others the whole one.
+    """
+    if candidate.trim is None or not target.holes:
+        return [candidate.score.transform.apply(deploy(candidate.sheet).outline(candidate.score.phi))]
+    posed = PosedDesign(deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi, candidate.trim)
+    shown = posed.silhouette(posed.nodes(posed.phi_target), posed.phi_target, target.polygon)
+    outer, holes = rings_of(largest_piece(shown)[0])
+    return [outer, *holes]
 
 
 def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dict[str, str]]:
