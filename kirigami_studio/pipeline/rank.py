@@ -181,7 +181,7 @@ class Ranking:
         score, even = first.score, first.score.evenness
         if not self.cuttable(first):
             return self._why_not(first)
-        if first.trim is not None and first.trim.holes_open:
+        if first.trim is not None and first.trim.holes:
             return Note.of("rank.holes_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
         if first.trim is not None and first.trim.given_up:
             return Note.of("rank.notch_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
