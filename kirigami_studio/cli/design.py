@@ -35,6 +35,7 @@ from kirigami_studio.outlines.pieces import largest_piece, rings_of
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
+from kirigami_studio.pipeline.auto_start import chosen_start
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
@@ -53,7 +54,15 @@ from kirigami_studio.settings.fabrication import (
 )
 from kirigami_studio.settings.layers import note_before_run
 from kirigami_studio.studio.as_cut import AsCut, jam_json
-from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
+from kirigami_studio.studio.designing import (
+    completed,
+    document_of,
+    first_of_families,
+    request_for,
+    run_design,
+    why_covered,
+    why_untrimmed,
+)
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
@@ -289,6 +298,8 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
     }
     if result.request.grid_chosen:
         answer["grid"], answer["grid_reason"] = list(result.request.chosen_grid), chosen_for(result.request).reason
+    if result.request.start_chosen:
+        answer["start_choice"] = {"name": result.request.start.name, "reason": chosen_start(result.request).reason}
     if not result.request.start.is_plain:
         sheet = result.best.sheet
         answer["start"] = {
@@ -308,6 +319,13 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
         }
     if result.best.trim is not None:
         answer["trimmed_iou"] = result.best.trim.iou
+    answer["families"] = {
+        family.value: {"place": place, "match": one.match, "given_up": one.given_up}
+        for family, (place, one) in first_of_families(result.candidates).items()
+    }
+    why = why_covered(result.candidates, result.request.target, result.request.start)
+    if why is not None:
+        answer["why_covered"] = {"code": why.code, "text": why.text}
     if result.request.budget_seconds is not None:
         answer["budget_ended"] = result.budget_ended
     return answer
@@ -315,7 +333,7 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
 
 def candidates_json(result: Result, construction: Construction) -> list[dict[str, object]]:
     """The entries of ``candidates``, best first, each with its rank's reason and its group."""
-    kind = {"family": "closed", "construction": construction.value}
+    kind = {"construction": construction.value}
     ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
@@ -344,7 +362,12 @@ def candidate_json(candidate: Candidate, target: Outline, ranking: Ranking, as_c
         "at_limit": even.at_limit,
         "cuttable": ranking.cuttable(candidate),
         "as_cut": as_cut.to_json() if isinstance(as_cut, AsCut) else None,
+<<<<<<< HEAD
         "outline": [ring.tolist() for ring in _shown_rings(candidate, target)],
+=======
+        "family": candidate.family.value,
+        "outline": [ring.tolist() for ring in _silhouette(candidate)],
+>>>>>>> main
     }
     if candidate.second is not None:
         match = candidate.second.match
@@ -352,9 +375,11 @@ def candidate_json(candidate: Candidate, target: Outline, ranking: Ranking, as_c
     if candidate.trim is not None:
         cut = sheet_json(candidate.trim.sheet)
         entry |= {"trimmed_iou": candidate.trim.iou, "trimmed_ratio": cut["ratio"], "trimmed_rim": cut["rim"]}
+        entry["given_up"] = candidate.given_up
     return entry
 
 
+<<<<<<< HEAD
 def _shown_rings(candidate: Candidate, target: Outline) -> list[FloatArray]:
     """What is seen of a candidate at its angle, in the frame of the target: the outer ring, then holes.
 
@@ -366,6 +391,14 @@ def _shown_rings(candidate: Candidate, target: Outline) -> list[FloatArray]:
     shown = posed.silhouette(posed.nodes(posed.phi_target), posed.phi_target, target.polygon)
     outer, holes = rings_of(largest_piece(shown)[0])
     return [outer, *holes]
+=======
+def _silhouette(candidate: Candidate) -> list[FloatArray]:
+    """Rings (P, 2) of what a design shows, in the frame of the target."""
+    motion, pose, phi = deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi
+    if candidate.trim is None:
+        return [pose.apply(motion.outline(phi))]
+    return PosedDesign(motion, pose, phi, candidate.trim).silhouette(phi)
+>>>>>>> main
 
 
 def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dict[str, str]]:
@@ -446,6 +479,8 @@ def _folder_name(name: str, used: set[str]) -> str:
 
 def _say_result(target: Outline, result: Result, files: dict[str, str], verdict: Verdict) -> None:
     score, trim = result.best.score, result.best.trim
+    if result.request.start_chosen:
+        say(f"{target.name}: {chosen_start(result.request).reason}")
     if result.request.grid_chosen:
         say(f"{target.name}: {chosen_for(result.request).reason}")
     best = tr_n(
@@ -493,6 +528,9 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
         )
     (reason, *_) = result.ranking.reasons(result.candidates)
     say(f"{target.name}: {reason.text}")
+    why = why_covered(result.candidates, target, result.request.start)
+    if why is not None:
+        say(f"{target.name}: {why.text}")
     if trim is not None:
         say(
             tr(

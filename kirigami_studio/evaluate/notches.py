@@ -229,8 +229,11 @@ class _NotchCut:
         panels = np.unique(np.concatenate(beside))
         changes = self._void_gain.flat[np.unique(orbit)].sum() * (1.0 if after.flat[orbit[0]] else -1.0)
         old, new = _hinges_of(before), _hinges_of(after)
-        changes += sum(self._part(k, new[k])[0] - self._part(k, old[k])[0] for k in panels.tolist())
-        return float(changes)
+        changes -= sum(self._part(k, old[k])[0] for k in panels.tolist())
+        most = float(changes + self._inside[panels[new[panels].any(axis=1)]].sum())
+        if most <= LEAST_GAIN:  # no panel is worth more than its part on the target, so no part has to be made
+            return most
+        return float(changes + sum(self._part(k, new[k])[0] for k in panels.tolist()))
 
     def _part(self, k: int, hinged: BoolArray) -> tuple[float, BaseGeometry | None]:
         """What a panel with these hinges adds to the silhouette's worth, and what stays of it."""

@@ -41,7 +41,7 @@ from kirigami_studio.export.pdf_pages import (
     to_page,
 )
 from kirigami_studio.export.picture import Colour
-from kirigami_studio.fabricate.hold import HeldState
+from kirigami_studio.fabricate.hold import HeldState, HoldKind
 from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
@@ -107,6 +107,8 @@ class AssemblySheet:
     steps : sequence of str
     legend : mapping of int to str
         Words on the layers.
+    hold_steps : mapping of HoldKind to str
+        The step that each kind of place adds.
     pins_are_put_in : bool
         Whether pins are listed in their order.
     template : CutBed or None
@@ -124,6 +126,7 @@ class AssemblySheet:
     drive: DriveParts | None = None
     steps: Sequence[str] = STEPS
     legend: Mapping[int, str] = field(default_factory=lambda: LEGEND)
+    hold_steps: Mapping[HoldKind, str] = field(default_factory=lambda: HOLD_STEPS)
     pins_are_put_in: bool = True
     template: CutBed | None = None
     under: FloatArray | None = None
@@ -421,7 +424,7 @@ def _first_page(canvas: Any, sheet: AssemblySheet, page: Size) -> None:
     for line in sheet.lines:
         column.text(line)
     column.head(tr("Assembly"))
-    held = [HOLD_STEPS[kind] for kind in dict.fromkeys(place.kind for place in sheet.holds)]
+    held = [sheet.hold_steps[kind] for kind in dict.fromkeys(place.kind for place in sheet.holds)]
     for number, line in enumerate((*sheet.steps, *held), start=1):
         column.text(tr(line), f"{number}.")
     _ink(canvas)

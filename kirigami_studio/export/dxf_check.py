@@ -32,7 +32,11 @@ from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRe
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import NAME_LAYER
+<<<<<<< HEAD
 from kirigami_studio.export.provenance import AROUND, PROGRAM, SLOT_KERF
+=======
+from kirigami_studio.export.provenance import AROUND, PROGRAM, THROUGH
+>>>>>>> main
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
@@ -47,7 +51,9 @@ from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.foundation.plain_text import plain_line
 
 #: Kinds of file that an export has beside cut files.
-NO_CUT_FILES = frozenset({".pdf", ".png", ".gif", ".html", ".json", ".kiri"})
+NO_CUT_FILES = frozenset(
+    {".pdf", ".png", ".gif", ".html", ".json", ".kiri", ".csv", ".txt", ".3mf", ".stl", ".obj", ".fold", ".xml"}
+)
 #: A tab may differ from the width that the file promises by this much (mm).
 TAB_TOLERANCE_MM = 1e-3
 #: Cuts may end this far (mm) beyond the outline: edge cuts run over it on purpose.
@@ -309,14 +315,19 @@ def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> 
 
 
 def _without_registration(content: DxfContent, problems: list[Problem]) -> DxfContent:
-    """The sheet of a file with so many holes round it; files for single layers stay."""
+    """The sheet of a file with so many holes round it and in it; files for single layers stay."""
     promised = content.facts.get(AROUND)
     if promised is None or "PART" in content.facts:
         return content
-    count = int(promised) if promised.isdecimal() and len(promised) <= 2 else 0
-    holes, cuts = content.paths[:count], content.paths[count:]
+    around, through = (
+        int(one) if one.isdecimal() and len(one) <= 2 else 0 for one in (promised, content.facts.get(THROUGH, "0"))
+    )
+    outside, inside = content.paths[:around], content.paths[around : around + through]
+    cuts = content.paths[around + through :]
     sheet = shapely.box(*shapely.total_bounds([LineString(path.points) for path in cuts])) if cuts else Polygon()
-    if not count or not all(path.closed and not sheet.intersects(LineString(path.points)) for path in holes):
+    lines = [LineString(path.points) for path in (*outside, *inside)]
+    right = [sheet.intersects(line) == (number >= around) for number, line in enumerate(lines)]
+    if not around or not all(right) or not all(path.closed for path in (*outside, *inside)):
         problems.append(Problem.error("cut_file.registration_differs", promised=promised))
         return content
     return replace(content, paths=cuts)

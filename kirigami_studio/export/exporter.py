@@ -49,6 +49,7 @@ class ExportJob:
     verdict: str = ""  #: Level of the verdict on the sheet, which every file repeats; "" where nobody has judged it
     #: How files of solids are made: the planned sheet, as thick as its material, unless given
     printing: Printing = field(default_factory=Printing)
+    thickness_mm: float = 1.0  #: Of the material, for models of rigid parts
     pieces: PosedPieces | None = None  #: Shown in pictures of a design that is made of pieces, not its panels
 
     @classmethod

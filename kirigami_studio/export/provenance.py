@@ -40,6 +40,8 @@ ONE_SHEET = "one-sheet"
 SLOT_KERF, VERDICT = "SLOT_KERF_MM", "VERDICT"
 #: The fact with the number of holes round the sheet that are made first.
 AROUND = "HOLES_AROUND"
+#: The same of holes in the sheet that hold it, which are made next.
+THROUGH = "HOLES_THROUGH"
 #: Raised when entries change their meaning.
 VERSION = 1
 

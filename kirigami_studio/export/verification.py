@@ -525,7 +525,8 @@ def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[S
     """Notes on this profile and version."""
     found = [profile.note] if profile.note is not None else []
     if plan.engraving is not None and profile.name_colour is None:
-        found.append(Note.of("profile.name_left_out", name=plan.engraving.text))
+        name = plan.engraving.text
+        found.append(Note.of("profile.name_left_out", name=name) if name else Note.of("profile.marks_left_out"))
     if version == "R12" and path.suffix.lower() != ".svg":
         found.append(Note.of("verify.no_unit_in_r12"))
     if profile.slots:

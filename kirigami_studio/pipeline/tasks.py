@@ -19,7 +19,7 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
-from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
+from kirigami_studio.pipeline.redesign import covered, kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape
 from kirigami_studio.polish.junctions import junction_weight
@@ -189,6 +189,23 @@ class TrimTask:
         """Trim, unless the design crosses itself."""
         try:
             made = trimmed(self.candidate, request.target, request.keep, stopped, least_panel=request.kept_when_trimmed)
+        except KirigamiError:
+            return TaskResult(None, 1)
+        return TaskResult(made.candidate, made.evaluations)
+
+
+@dataclass(frozen=True, slots=True)
+class CoverTask:
+    """Make a design that covers the target of a candidate, and cut its notches."""
+
+    candidate: Candidate
+
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
+        """Fit and cut, unless the design crosses itself."""
+        sizes = {"least_panel": request.kept_when_trimmed, "even": request.even}
+        keep = request.keep if self.candidate.trim is None else self.candidate.trim.keep
+        try:
+            made = covered(self.candidate, request.target, keep, stopped, **sizes)
         except KirigamiError:
             return TaskResult(None, 1)
         return TaskResult(made.candidate, made.evaluations)

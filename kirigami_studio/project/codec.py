@@ -134,7 +134,7 @@ def _settings_json(settings: DesignSettings, seconds: list[SecondTarget]) -> dic
     entries = {"grid": list(settings.grid), **settings_json(settings)}
     if settings.second is not None:
         entries["second"] = {"number": seconds.index(settings.second)}
-    if not start.is_plain:
+    if not start.is_plain or start.is_auto:
         outline = None if start.outline is None else _outline_json(start.outline)
         softer = {} if start.weight == USUAL_WEIGHT else {"weight": start.weight}
         entries["start"] = {"name": start.name, "aspect": start.aspect, "outline": outline, **softer}

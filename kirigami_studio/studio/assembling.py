@@ -34,6 +34,9 @@ from kirigami_studio.settings.fabrication import (
 from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
 from kirigami_studio.studio.cutting import kerf_mm
 
+#: Weight of the target against the flat outline: pieces stick out of that one for it where it has area to spare.
+#: Printed sheets have none: gaps between their pieces take it.
+TARGET_FIRST = 0.75
 #: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.
 MOST_KEPT = 48
 
@@ -57,6 +60,7 @@ def pin_options(settings: FabricationSettings) -> PinOptions:
         wall_mm=0.5 * (sizes.ear_mm - sizes.hole_mm) if printed else None,  # a joint needs all of its ear
         head_mm=sizes.head_mm,
         margin_mm=sizes.margin_mm,
+        weight=0.5 if printed else TARGET_FIRST,
         in_one_plane=printed,
     )
 
@@ -132,7 +136,7 @@ def assembled(
             if machine is not None:
                 more = print_problems(plan, material_for(settings), machine)
                 report = replace(report, problems=(*more, *report.problems))
-            places = held(plan, hold) if machine is None else HeldPlaces()
+            places = held(plan, hold)
         except GEOSException as error:  # floating point ended the geometry of this one design
             raise FabricationError("pinned.not_made", reason=error) from error
         plan = replace(plan, assembly=with_places(plan.assembly, places.places))

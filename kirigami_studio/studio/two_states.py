@@ -24,6 +24,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 
 #: Starts that are no silhouettes, by what their names begin with.
 START_NAMES = {
+    "auto": mark("auto"),
     "rectangle": mark("rectangle"),
     "square": mark("square"),
     "circle": mark("circle"),
@@ -31,6 +32,8 @@ START_NAMES = {
     "triangle": mark("triangle"),
     "hexagon": mark("hexagon"),
     "polygon": mark("polygon"),
+    "gable": mark("gable"),
+    "notch": mark("notched rectangle"),
 }
 
 

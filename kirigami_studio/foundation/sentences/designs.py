@@ -50,6 +50,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Mouths on the rim's {side} side must lie between 0 and {length:g} cells, in rising order and at least "
         "{least:g} cells apart."
     ),
+    "start.few_corners": mark(
+        "The flat sheet is a rectangle: the shape needs no other corners, and is expected to match {percent:.0f} %."
+    ),
+    "start.rectangle_tried": mark(
+        "The flat sheet is a rectangle: of {count} starts that were tried none is clearly better."
+    ),
+    "start.other_tried": mark(
+        "The flat sheet is '{name}', the best of {count} starts that were tried: the shape needs {sides} sides."
+    ),
     "start.not_points": mark("A start outline must be a list of at least three points [x, y] with finite numbers."),
     "start.crosses_itself": mark("The start outline crosses itself or has no area. Use one simple closed shape."),
     "start.not_convex": mark(
@@ -216,6 +225,19 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "model.unknown_variant": mark("There is no generator variant '{variant:.40}'. Choose one of {choices}."),
     # pipeline
+    "covers.better": mark(
+        "Closed sheets match by {closed:.1f} % at most; with parts cut away {cover:.1f} %, {given_up:.0f} % of the "
+        "sheet."
+    ),
+    "covers.many_arms": mark(
+        "No closed sheet of {sides:.0f} sides shows so many arms: {closed:.1f} % is the most found; with notches "
+        "{cover:.1f} %, {given_up:.0f} % of the sheet cut away."
+    ),
+    "covers.turns_back": mark(
+        "No closed sheet shows the notch at {across:.0f} % of the width and {up:.0f} % of the height, where the "
+        "outline turns back by {degrees:.0f} degrees: {closed:.1f} % is the most found; with notches {cover:.1f} %, "
+        "{given_up:.0f} % of the sheet cut away."
+    ),
     "fit.stopped": mark("Fitting stopped; nothing changed."),
     "rank.best_balance": mark("Best balance: match {match:.1f} %, panel sizes vary by {variation:.0f} %."),
     "rank.best_balance_symmetric": mark(
@@ -231,6 +253,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Best of both targets: match {match:.1f} %, and {second:.1f} % with the second one at {angle:.0f} degrees."
     ),
     "rank.equal": mark("As good as the first design."),
+    "rank.gives_up": mark("It cuts {own:.0f} % of the sheet away, the first design {first:.0f} %."),
     "rank.jams": mark("As cut, it is estimated to jam at {own:.0f} degrees."),
     "rank.less_as_cut": mark(
         "As cut, it loses {own:.2f} % of its match and by stretched connectors, the first design {first:.2f} %."
@@ -248,10 +271,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "rank.not_symmetric": mark("The first design is symmetric, this one is not."),
     "rank.not_trimmed": mark("It is not trimmed."),
     "rank.notch_cut_out": mark_n(
-        "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
-        "are cut out of it with {count} panel.",
-        "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
-        "are cut out of it with {count} panels.",
+        "Match {match:.1f} %, gives up {percent:.0f} % of the sheet: it covers the notches, and they are cut out of it "
+        "with {count} panel.",
+        "Match {match:.1f} %, gives up {percent:.0f} % of the sheet: it covers the notches, and they are cut out of it "
+        "with {count} panels.",
     ),
     "rank.holes_cut_out": mark_n(
         "Match once trimmed: {match:.1f} %. The sheet covers its holes; they are cut out of it with {count} panel.",

@@ -34,6 +34,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "profile.name_left_out": mark(
         "The name {name!r} is not in this file: with this machine profile, everything in a file is cut."
     ),
+    "profile.marks_left_out": mark(
+        "The marks of places that hold the sheet are not in this file: with this machine profile, everything in a file "
+        "is cut."
+    ),
     "profile.kerf_is_theirs": mark(
         "Contours are the edges of the finished part: the cutting service has to allow for its kerf."
     ),
@@ -184,6 +188,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The GIF did not read back as planned: {found} frames instead of {planned}, or another size. Nothing was "
         "written. Please report it."
     ),
+    "linkage.not_as_written": mark("{name} did not read back as it was written. Write it again, or to another place."),
+    "linkage.apart": mark("Only {together} of {parts} parts hang together by hinges. Trim less, then write the model."),
     "page.not_as_written": mark(
         "The page did not read back as planned: {name:.40}. Nothing was written. Please report it."
     ),

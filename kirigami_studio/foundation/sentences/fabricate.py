@@ -511,8 +511,21 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{count} pin is left out, which would have no wall; the pieces move in one way all the same.",
         "{count} pins are left out, which would have no wall; the pieces move in one way all the same.",
     ),
-    "hold.only_on_pins": mark(
-        "Magnets, eyelets, stitches and tabs are placed in two layers on pins only: this sheet has none."
+    "hold.marks_for_magnets": mark(
+        "Engraved marks with numbers, two of each, meet as the sheet moves: {open} keep it open, {flat} flat. Glue a "
+        "magnet on each, with opposite poles up at the two of a number."
+    ),
+    "hold.marks_for_eyelets": mark(
+        "Engraved marks with numbers, two of each, meet as the sheet moves: {open} keep it open, {flat} flat. Punch "
+        "each, set an eyelet, and tie the two of a number."
+    ),
+    "hold.marks_for_stitches": mark(
+        "Engraved crosses with numbers, two of each, meet as the sheet moves: {open} keep it open, {flat} flat. Pierce "
+        "them, and sew the two of a number together."
+    ),
+    "hold.marks_for_tabs": mark(
+        "Engraved marks with numbers, two of each, meet as the sheet moves: {open} keep it open, {flat} flat. Stick "
+        "tape over the two of a number."
     ),
     "drive.only_on_pins": mark("A board with arms moves two layers on pins only: this sheet has none."),
     "drive.needs_screws": mark(

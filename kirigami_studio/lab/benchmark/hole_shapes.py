@@ -82,14 +82,8 @@ def _stroked(strokes: list[FloatArray]) -> BaseGeometry:
 
 
 def _gear() -> BaseGeometry:
-<<<<<<< HEAD
-    teeth = [
-        rotate(Polygon([(0.8, -0.14), (1.0, -0.09), (1.0, 0.09), (0.8, 0.14)]), 36.0 * k, (0, 0)) for k in range(10)
-    ]
-=======
     tooth = Polygon([(0.8, -0.14), (1.0, -0.09), (1.0, 0.09), (0.8, 0.14)])
     teeth = [rotate(tooth, 36.0 * number, (0, 0)) for number in range(10)]
->>>>>>> holes-core
     return shapely.union_all([_disc(0.82), *teeth]).difference(_disc(0.32))
 
 

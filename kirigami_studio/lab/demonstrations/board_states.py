@@ -181,10 +181,10 @@ class BoardStates(OffscreenSession):
         self.picture("start-menu", tile.menu)
         tile.menu.close()
         window.dialogs.show_start_board()
-        window.dialogs.show_pairs()
-        board, gallery = window.dialogs.start_board, window.dialogs.pairs
-        if board is None or gallery is None:
-            raise SessionError("The board or the pairs did not open.")
+        window.presenters.show_pairs()
+        board, gallery = window.dialogs.start_board, window.welcome.pairs
+        if board is None:
+            raise SessionError("The board did not open.")
         board.view.context.changed.emit(Change("Draw polygon", lambda: Placed.from_ring(HOLLOW, "polygon")))
         for palette in (DARK, LIGHT):
             window.appearance.set_theme(palette)

@@ -26,6 +26,7 @@ from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
 from kirigami_studio.gui.window.application import create_window
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
 from kirigami_studio.lab.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
 from kirigami_studio.project import recovery
@@ -153,7 +154,7 @@ class StateSheet(BoardStates):
 
     def welcome(self) -> None:
         """The welcome page with the question for machine and material, and without it."""
-        presenter, page = self.window.presenters.welcome, self.window.stage.welcome
+        presenter, page = self.window.presenters.welcome, self.window.welcome
         presenter.begin()
         self.until(lambda: page.ready, "the sample was not read")
         page.stop()
@@ -172,9 +173,9 @@ class StateSheet(BoardStates):
         window.files.open_sample()
         self.until(window.fabrication.export.isEnabled, "the sample was not opened")
         self.all_sizes("german-designs")
-        window.stage.cuts_switch.click()
+        window.commands["cuts"].trigger()
         self.all_sizes("german-cuts")
-        window.stage.cuts_switch.click()
+        window.commands["cuts"].trigger()
         window.target.set_editing(True)
         self.all_sizes("german-board")
         window.target.set_editing(False)
@@ -336,9 +337,9 @@ class StateSheet(BoardStates):
             raise SessionError("The design was not trimmed.")
         self.until(self._planned, "no trimmed cut plan was made")
         self.all_sizes("trimmed")
-        click(stage.cuts_switch)
+        self.window.commands["cuts"].trigger()
         self.all_sizes("trimmed-cuts")
-        click(stage.cuts_switch)
+        self.window.commands["cuts"].trigger()
         stage.deployment.set_phi(math.radians(60.0))
         self.all_sizes("trimmed-half-open")
         stage.deployment.set_phi(math.pi)
@@ -375,9 +376,9 @@ class StateSheet(BoardStates):
         """The cut plan: whole, half cut with its travel, with connectors of their own and a problem, with options and
         the name engraved.
         """
-        stage, fabrication = self.window.stage, self.window.fabrication
-        page, history = stage.cuts, self.window.session.history
-        click(stage.cuts_switch)
+        fabrication = self.window.fabrication
+        page, history = self.window.cuts, self.window.session.history
+        self.window.commands["cuts"].trigger()
         self.all_sizes("cuts")
         click(page.toggles[CutOverlay.TRAVEL])
         page.bar.slider.setValue(page.bar.slider.maximum() // 2)
@@ -390,22 +391,20 @@ class StateSheet(BoardStates):
         self.all_sizes("cuts-connectors")
         page.problems.setCurrentRow(0)
         self.all_sizes("cuts-problem")
-        stage.fit()
+        page.view.fit()
         while history.undo_label is not None and "connectors" in history.undo_label:
             self.window.commands["undo"].trigger()
         self.until(lambda: not page.problems.isVisible(), "undo did not bring the connectors back")
         page.view.gestures.select(frozenset())
-        click(stage.cuts_switch)
-        fabrication.options.fold.setChecked(True)
+        self.window.commands["cuts"].trigger()
+        self.window.pages.turn(Page.MAKE)
         self.all_sizes("options")
         click(fabrication.options.engrave)
         self.until(lambda: page.view.shows_name, "the name was not engraved")
-        click(stage.cuts_switch)
         self.all_sizes("cuts-name")
-        click(stage.cuts_switch)
         self.window.commands["undo"].trigger()
         self.until(lambda: not page.view.shows_name, "undo did not take the name off")
-        fabrication.options.fold.setChecked(False)
+        self.window.pages.turn(Page.DESIGN)
 
     def exported(self) -> None:
         """The report of a cut file and the material editor, in both themes."""

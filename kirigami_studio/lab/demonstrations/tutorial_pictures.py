@@ -85,9 +85,9 @@ class TutorialPictures(OffscreenSession):
         window.stage.deployment.set_phi(math.radians(75.0))
         self.shrunk("half-open", window.stage)
         window.stage.deployment.set_phi(0.0)
-        click(window.stage.cuts_switch)
-        self.shrunk("cuts", window.stage)
-        click(window.stage.cuts_switch)
+        window.commands["cuts"].trigger()
+        self.shrunk("cuts", window.cuts)
+        window.commands["cuts"].trigger()
         window.services.exporter.export(CUT_FILE)
         self.until(lambda: window.dialogs.report is not None, "no report was shown")
         if window.dialogs.report is not None:
