@@ -31,7 +31,6 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import lost_to_chords, start_error, start_match
 from kirigami_studio.lattice.sheet_files import sheet_json
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.pieces import largest_piece, rings_of
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
@@ -337,13 +336,13 @@ def candidates_json(result: Result, construction: Construction) -> list[dict[str
     ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
-        candidate_json(candidate, result.request.target, ranking, result.as_cut.get(candidate))
+        candidate_json(candidate, ranking, result.as_cut.get(candidate))
         | {"rank_reason": reason.text, "group": group, **kind}
         for candidate, reason, group in zip(candidates, reasons, groups, strict=True)
     ]
 
 
-def candidate_json(candidate: Candidate, target: Outline, ranking: Ranking, as_cut: object = None) -> dict[str, object]:
+def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None) -> dict[str, object]:
     """One entry of ``candidates``: a sheet file with score and provenance.
 
     ``as_cut`` is how it does as cut, null where its cuts cannot be planned.
@@ -362,12 +361,8 @@ def candidate_json(candidate: Candidate, target: Outline, ranking: Ranking, as_c
         "at_limit": even.at_limit,
         "cuttable": ranking.cuttable(candidate),
         "as_cut": as_cut.to_json() if isinstance(as_cut, AsCut) else None,
-<<<<<<< HEAD
-        "outline": [ring.tolist() for ring in _shown_rings(candidate, target)],
-=======
         "family": candidate.family.value,
         "outline": [ring.tolist() for ring in _silhouette(candidate)],
->>>>>>> main
     }
     if candidate.second is not None:
         match = candidate.second.match
@@ -379,26 +374,12 @@ def candidate_json(candidate: Candidate, target: Outline, ranking: Ranking, as_c
     return entry
 
 
-<<<<<<< HEAD
-def _shown_rings(candidate: Candidate, target: Outline) -> list[FloatArray]:
-    """What is seen of a candidate at its angle, in the frame of the target: the outer ring, then holes.
-
-    Of a target with holes it is the trimmed sheet, which alone has some, of others the whole one.
-    """
-    if candidate.trim is None or not target.holes:
-        return [candidate.score.transform.apply(deploy(candidate.sheet).outline(candidate.score.phi))]
-    posed = PosedDesign(deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi, candidate.trim)
-    shown = posed.silhouette(posed.nodes(posed.phi_target), posed.phi_target, target.polygon)
-    outer, holes = rings_of(largest_piece(shown)[0])
-    return [outer, *holes]
-=======
 def _silhouette(candidate: Candidate) -> list[FloatArray]:
     """Rings (P, 2) of what a design shows, in the frame of the target."""
     motion, pose, phi = deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi
     if candidate.trim is None:
         return [pose.apply(motion.outline(phi))]
     return PosedDesign(motion, pose, phi, candidate.trim).silhouette(phi)
->>>>>>> main
 
 
 def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dict[str, str]]:

@@ -108,12 +108,6 @@ class PosedDesign:
         boundary: FloatArray = nodes[tables.outline_at_zero if zipped else tables.outline_nodes]
         return boundary
 
-<<<<<<< HEAD
-    def silhouette(self, nodes: FloatArray, phi: float, target: shapely.Polygon) -> BaseGeometry:
-        """What the sheet covers, world, out of :meth:`nodes`; see :func:`covered`."""
-        removed, voids = self.removed(nodes, phi), self.voids(nodes).reshape(-1, 4, 2)
-        return covered(self.outline(nodes, phi), target, removed, voids)
-=======
     def silhouette(self, phi: float) -> list[FloatArray]:
         """Rings (P, 2) of what is shown at angle ``phi``, world: the outer one, then those of holes; voids filled."""
         nodes = self.nodes(phi)
@@ -125,7 +119,6 @@ class PosedDesign:
         left = shapely.get_parts(shapely.difference(shapely.Polygon(outline), cut, grid_size=GRID))
         largest = shapely.orient_polygons(max(left, key=lambda part: float(part.area)))
         return [shapely.get_coordinates(ring)[:-1] for ring in (largest.exterior, *largest.interiors)]
->>>>>>> main
 
     def to_world(self, places: npt.ArrayLike, phi: float) -> FloatArray:
         """Map places (..., 2) of the layout frame at ``phi`` to the world."""

@@ -32,11 +32,7 @@ from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRe
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import NAME_LAYER
-<<<<<<< HEAD
-from kirigami_studio.export.provenance import AROUND, PROGRAM, SLOT_KERF
-=======
-from kirigami_studio.export.provenance import AROUND, PROGRAM, THROUGH
->>>>>>> main
+from kirigami_studio.export.provenance import AROUND, PROGRAM, SLOT_KERF, THROUGH
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
