@@ -142,7 +142,7 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
 
 
 def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry) -> Iterator[Polygon]:
-    """Bodies of a piece cut along an outline, its outer pins joined, then farther and farther out.
+    """Bodies of a piece cut along an outline, its outer pins joined, then farther and farther.
 
     Parameters
     ----------
