@@ -375,7 +375,7 @@ def _usual(source: SourceParts) -> UsualChoice:
         return UsualChoice((number,), (number,), False, False, open_at or opening(_all_lines(lines), size), len(lines))
     silhouette = Polygon(enclosed(united([kinds[part.number] for part in taken], size))[0])
     outer = _outer(taken, kinds)
-    others = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
+    others: list[BaseGeometry] = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
     others += [part.region for part in faint]
     considered = tuple(number for number in kinds if takes_rings or not _is_letter_apart(source, number, taken))
     closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
