@@ -363,6 +363,17 @@ def test_that_the_plotters_pen_does_not_make_lines_broad(dxf, iou) -> None:
     assert dxf_parts(path).parts[0].pen.width == pytest.approx(0.7)
 
 
+@pytest.mark.parametrize(("length", "asks"), [(1.0, False), (20.0, True)])
+def test_that_long_lines_that_hang_on_a_shape_are_asked_about(length, asks, dxf, iou) -> None:
+    def draw(space, _drawing) -> None:
+        space.add_lwpolyline(SQUARE, close=True)
+        space.add_line((10, 10), (10 + length, 10))
+
+    path = dxf(draw)
+    assert dxf_parts(path).is_ambiguous is asks
+    assert iou(read_dxf(path), box_outline(1, 1)) > 0.999
+
+
 def clipped(space, drawing) -> None:
     """A block with a plate that is seen and a larger one that is clipped away, half a hatch, and lines that are cut."""
     block = drawing.blocks.new("Plate")
