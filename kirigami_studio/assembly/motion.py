@@ -210,7 +210,7 @@ def discs(centres: ComplexArray, radius: FloatArray | float) -> GeometryArray:
 def _corners(radius: float, tolerance: float) -> ComplexArray:
     """Corners (N,) on the unit circle; sides of as many miss a circle of this radius by the tolerance at most."""
     count = 4 * max(4, math.ceil(0.25 * math.pi * math.sqrt(radius / (2.0 * tolerance))))
-    return np.exp(2j * math.pi * np.arange(count) / count)
+    return np.asarray(np.exp(2j * math.pi * np.arange(count) / count))
 
 
 def swept_discs(
@@ -282,7 +282,9 @@ def swept_hulls(
         for count in np.unique(steps)
     ]
     # Hulls of lines, which are quicker to make than multipoints.
-    lines = shapely.linestrings(as_points(np.concatenate(both))) if both else []
+    if not both:
+        return np.empty(0, dtype=object)
+    lines = shapely.linestrings(as_points(np.concatenate(both)))
     return np.asarray(shapely.convex_hull(lines), dtype=object).reshape(-1)
 
 
