@@ -128,7 +128,7 @@ def states_picture(
     details: str = "",
     pieces: PosedPieces | None = None,
 ) -> str:
-    """A sheet flat, half open and at its angle, over its target (L, 2), in one scale; made of pieces if it is."""
+    """A sheet or its pieces flat, half open and at its angle, over its target (L, 2)."""
     end = design.phi_target
     angles = (math.pi, 0.5 * (math.pi + end), end)
     parts = [design.parts(phi) if pieces is None else pieces.outlines(phi) for phi in angles]
