@@ -241,6 +241,26 @@ def wave() -> BaseGeometry:
     return Polygon(ribbon)
 
 
+def face() -> BaseGeometry:
+    smile = disc(0, 0.1, 0.66).intersection(box(-1, -1, 1, -0.12)) - disc(0, 0.3, 0.62)
+    return disc(0, 0, 1) - rounded(smile, 0.03) - ellipse(-0.36, 0.3, 0.16, 0.2) - ellipse(0.36, 0.3, 0.16, 0.2)
+
+
+def letter_a() -> BaseGeometry:
+    whole = Polygon([(-1.15, -1.2), (-0.45, 1.2), (0.45, 1.2), (1.15, -1.2)])
+    hole = Polygon([(-0.33, -0.18), (0.33, -0.18), (0, 0.78)])
+    return whole - hole - Polygon([(-0.62, -1.3), (0.62, -1.3), (0.47, -0.75), (-0.47, -0.75)])
+
+
+def letter_b() -> BaseGeometry:
+    upper = union(box(-0.8, 0, 0.25, 1.2), disc(0.25, 0.6, 0.6))
+    lower = union(box(-0.8, -1.2, 0.25, 0.1), disc(0.25, -0.55, 0.65))
+    holes = union(
+        box(-0.25, 0.38, 0.2, 0.82), disc(0.2, 0.6, 0.22), box(-0.25, -0.8, 0.22, -0.3), disc(0.22, -0.55, 0.25)
+    )
+    return rounded(union(upper, lower), 0.0, 0.05) - holes
+
+
 SILHOUETTES: tuple[Silhouette, ...] = (
     Silhouette("circle", "Circle", "Smooth and convex; corners of the sheet have to vanish.", lambda: disc(0, 0, 1)),
     Silhouette("ellipse", "Ellipse", "A circle stretched 8 to 5.", lambda: ellipse(0, 0, 1.6, 1.0)),
@@ -288,34 +308,52 @@ SILHOUETTES: tuple[Silhouette, ...] = (
     Silhouette("pear", "Pear", "A belly, a shoulder and a stem.", pear),
     Silhouette("hourglass", "Hourglass", "Two bulbs joined by a narrow waist.", hourglass),
     Silhouette("wave", "Wave", "A ribbon between two parallel waves.", wave),
+    Silhouette("ring", "Ring", "A disc with a round hole.", lambda: disc(0, 0, 1) - disc(0, 0, 0.4)),
+    Silhouette("washer", "Washer", "A narrower ring: its hole is half as wide as it is.",
+               lambda: disc(0, 0, 1) - disc(0, 0, 0.52)),
+    Silhouette("frame", "Frame", "A rectangle with a rectangular hole.",
+               lambda: box(-1.4, -1, 1.4, 1) - box(-0.85, -0.5, 0.85, 0.5)),
+    Silhouette("gear-with-bore", "Gear with bore", "Ten teeth around a hole for a shaft.",
+               lambda: gear() - disc(0, 0, 0.36 * np.sqrt(gear().area / np.pi))),
+    Silhouette("face", "Face", "Two eyes and a smile: three holes.", face),
+    Silhouette("letter-a", "Letter A", "Two legs and a bar around a hole.", letter_a),
+    Silhouette("letter-b", "Letter B", "A stem and two bowls: two holes.", letter_b),
+    Silhouette("letter-o", "Letter O", "An ellipse with a narrower one as its hole.",
+               lambda: ellipse(0, 0, 0.85, 1.1) - ellipse(0, 0, 0.38, 0.6)),
 )  # fmt: skip
 
 
-def vertices(silhouette: Silhouette) -> list[list[float]]:
-    """Vertices at area 1 around the centroid, counter-clockwise, at most ``MOST_VERTICES``.
+def rings(silhouette: Silhouette) -> list[list[list[float]]]:
+    """Outer ring and holes, counter-clockwise, the filled shape of area 1 around its centroid.
 
     Raises
     ------
     ValueError
-        The construction is not one simple polygon without holes, or needs too many vertices.
+        The construction is not one polygon, or needs more than ``MOST_VERTICES``.
     """
     shape = silhouette.make()
-    if not isinstance(shape, Polygon) or shape.interiors or not shape.is_valid:
-        raise ValueError(f"{silhouette.name} is not one simple polygon without holes")
-    shape = translate(shape, -shape.centroid.x, -shape.centroid.y)
-    size = shape.area**-0.5
+    if not isinstance(shape, Polygon) or not shape.is_valid:
+        raise ValueError(f"{silhouette.name} is not one polygon")
+    filled = Polygon(shape.exterior)
+    shape = translate(shape, -filled.centroid.x, -filled.centroid.y)
+    size = filled.area**-0.5
     unit = scale(shape, size, size, origin=(0, 0)).simplify(TOLERANCE)
-    ring = np.round(shapely.get_coordinates(shapely.normalize(unit))[:-1][::-1], 5)
-    if len(ring) > MOST_VERTICES:
-        raise ValueError(f"{silhouette.name} has {len(ring)} vertices, more than {MOST_VERTICES}")
-    return [[float(x), float(y)] for x, y in ring + 0.0]
+    found = []
+    for ring in (unit.exterior, *sorted(unit.interiors, key=lambda hole: hole.centroid.coords[0])):
+        points = np.round(shapely.get_coordinates(shapely.normalize(Polygon(ring)))[:-1][::-1], 5)
+        found.append([[float(x), float(y)] for x, y in points + 0.0])
+    if (count := sum(map(len, found))) > MOST_VERTICES:
+        raise ValueError(f"{silhouette.name} has {count} vertices, more than {MOST_VERTICES}")
+    return found
 
 
 def text(silhouette: Silhouette) -> str:
     """The stored file: one vertex a line, so that a change shows in a diff."""
     head = {"name": silhouette.name, "title": silhouette.title, "about": silhouette.about}
-    rows = ",\n".join(f"  {json.dumps(vertex)}" for vertex in vertices(silhouette))
-    return json.dumps(head)[:-1] + f', "points": [\n{rows}\n]}}\n'
+    outer, *holes = (",\n".join(f"  {json.dumps(vertex)}" for vertex in ring) for ring in rings(silhouette))
+    inner = ", ".join(f"[\n{rows}\n]" for rows in holes)
+    more = f', "holes": [{inner}]' if holes else ""
+    return json.dumps(head)[:-1] + f', "points": [\n{outer}\n]{more}}}\n'
 
 
 def main() -> None:

@@ -71,6 +71,7 @@ from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, is_pinned, with_choices
 from kirigami_studio.studio.as_cut import AsCut, simulated
 from kirigami_studio.studio.cutting import check_connectors
+from kirigami_studio.studio.file_kinds import FILE_KINDS
 from kirigami_studio.studio.making import (
     CutRequest,
     MadePieces,
@@ -91,7 +92,7 @@ from kirigami_studio.studio.verdict import Level, Verdict, judge_assembled
 #: Files that hold a project, whose chosen design is meant.
 PROJECTS = (SUFFIX, *CUT_FILES)
 #: Files that need no planned cuts.
-PICTURES = (".png", ".gif", ".html")
+PICTURES = tuple(kind.extension for kind in FILE_KINDS if not kind.cuts)
 #: Colours of the levels of a verdict, on white and on black.
 LEVELS = {Level.READY: "#30a46c", Level.CARE: "#d9730d", Level.FAILS: "#e5484d"}
 
@@ -343,8 +344,7 @@ class Design:
     @property
     def iou(self) -> float:
         """Exact IoU of the polygons; of a trimmed design that of what is left."""
-        trim = self.candidate.trim
-        return self.score.iou_exact if trim is None else trim.iou
+        return self.candidate.match
 
     @property
     def tv(self) -> float:
@@ -363,8 +363,18 @@ class Design:
 
     @property
     def trimmed(self) -> bool:
-        """Whether edge panels were cut along the target."""
+        """Whether panels were cut along the target."""
         return self.candidate.trim is not None
+
+    @property
+    def family(self) -> str:
+        """``closed`` where the whole sheet shows the target, ``cover`` where parts of it are cut away."""
+        return self.candidate.family.value
+
+    @property
+    def given_up(self) -> float:
+        """Share of the flat sheet's area that is cut away."""
+        return self.candidate.given_up
 
     @property
     def symmetry(self) -> str | None:
@@ -483,7 +493,8 @@ class Design:
         path : path
             ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for designs in layers in a folder of this name;
             ``.stl``, ``.3mf`` or ``.obj``: solids, on printed pins in a folder of this name; ``.png``: the closed
-            sheet; ``.gif``: its motion; ``.html``: a page to share.
+            sheet; ``.gif``: its motion; ``.html``: a page to share; ``.fold``,
+            ``.xml`` (MuJoCo), ``.csv``: its parts and hinges.
 
         Returns
         -------
@@ -530,7 +541,7 @@ class Design:
         figures = [f"IoU {self.iou:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
         details = "  ·  ".join(figures if self.feasible else [*figures, "not feasible"])
         heading = f"{self.name}  ·  {self.target.name}"
-        return states_picture(self.posed, self.target.points, heading, details, self._small_pieces)
+        return states_picture(self.posed, self.target.rings, heading, details, self._small_pieces)
 
     @property
     def _small_pieces(self) -> PosedPieces | None:

@@ -38,7 +38,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
 from kirigami_studio.settings.fabrication import new_settings
-from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design
+from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design, why_covered
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
 LINE = 78
@@ -97,6 +97,11 @@ class Designs(Sequence[Design]):
         """Side ratios of all of them: (K, m, n)."""
         return np.array([design.ratios for design in self])
 
+    def why_covered(self) -> str:
+        """Why there are designs of which parts are cut away beside closed ones; "" where there are none."""
+        why = why_covered(self.document.candidates, self.document.target, self.document.settings.start)
+        return "" if why is None else why.text
+
     def table(self) -> list[dict[str, Any]]:
         """One row of figures for each, for ``pandas.DataFrame`` and the like."""
         return [
@@ -109,6 +114,8 @@ class Designs(Sequence[Design]):
                 "feasible": design.feasible,
                 "symmetry": design.symmetry,
                 "trimmed": design.trimmed,
+                "family": design.family,
+                "given_up": design.given_up,
             }
             for design in self
         ]
@@ -154,7 +161,7 @@ class Designs(Sequence[Design]):
 
     def _repr_svg_(self) -> str:
         heading = repr(self).strip("<>") if not len(self) else f"{len(self)} designs for {self.target.name}"
-        cards = [Thumbnail(one.posed, one.target.points, one.name, f"IoU {one.iou:.3f}") for one in self]
+        cards = [Thumbnail(one.posed, one.target.rings, one.name, f"IoU {one.iou:.3f}") for one in self]
         return contact_sheet(cards, heading)
 
 

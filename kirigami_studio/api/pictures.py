@@ -17,12 +17,18 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.picture import PANEL, PANEL_EDGE, TARGET_EDGE, hexadecimal
 from kirigami_studio.export.svg import NAMESPACE, decimals, path_data
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 
 #: Letters and lines on white or black paper; the curve; where something is too much.
 GREY, LINE, ALARM = "#7a7f87", "#3b82c4", "#e5484d"
 #: Layers of cuts as they are seen on both; files have the colours that machines know.
-LAYERS = {Layer.RELIEF: "#d9730d", Layer.SLITS: ALARM, Layer.EDGE_SLITS: "#30a46c", Layer.OUTLINE: LINE}
+LAYERS = {
+    Layer.RELIEF: "#d9730d",
+    Layer.SLITS: ALARM,
+    Layer.EDGE_SLITS: "#30a46c",
+    Layer.HOLES: LINE,
+    Layer.OUTLINE: LINE,
+}
 PANEL_FILL, PANEL_LINE = hexadecimal(PANEL), hexadecimal(PANEL_EDGE)
 TARGET = hexadecimal(TARGET_EDGE)
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif"
@@ -109,32 +115,32 @@ class Placing:
         return placed
 
 
-def target_picture(points: FloatArray, name: str) -> str:
-    """A filled outline with its name."""
+def target_picture(shape: ShapeRings, name: str) -> str:
+    """A filled outline with its holes and its name."""
+    points = as_rings(shape)[0]
     extent = np.ptp(points, axis=0)
     scale = CARD / float(extent.max())
     height = float(extent[1]) * scale
     canvas = SvgPicture.of(CARD + 2 * MARGIN, height + 2 * MARGIN + GAP, name)
     placing = Placing.of(points, scale, (CARD / 2 + MARGIN, height / 2 + MARGIN))
-    _target(canvas, placing(points), 2.0, filled="0.28")
+    _target(canvas, [placing(ring) for ring in as_rings(shape)], 2.0, filled="0.28")
     canvas.text(CARD / 2 + MARGIN, height + MARGIN + 17, _short(name, 22), "middle")
     return canvas.svg
 
 
 def states_picture(
     design: PosedDesign,
-    target: FloatArray | None,
+    target: ShapeRings,
     heading: str,
     details: str = "",
     pieces: PosedPieces | None = None,
 ) -> str:
-    """A sheet or its pieces flat, half open and at its angle, over its target (L, 2)."""
+    """A sheet, or its pieces, flat, half open and at its angle over its target, in one scale."""
     end = design.phi_target
     angles = (math.pi, 0.5 * (math.pi + end), end)
     parts = [design.parts(phi) if pieces is None else pieces.outlines(phi) for phi in angles]
     clouds = [np.concatenate(rings) for rings in parts]
-    if target is not None:
-        clouds[-1] = np.concatenate([clouds[-1], target])
+    clouds[-1] = np.concatenate([clouds[-1], *as_rings(target)])
     sizes = np.array([np.ptp(cloud, axis=0) for cloud in clouds])
     scale = STATE / float(sizes.max())
     widths, height = sizes[:, 0] * scale, float(sizes[:, 1].max()) * scale
@@ -146,11 +152,11 @@ def states_picture(
     left = float(MARGIN)
     for number, (phi, rings, cloud, width) in enumerate(zip(angles, parts, clouds, widths.tolist(), strict=True)):
         placing = Placing.of(cloud, scale, (left + width / 2, MARGIN + GAP + height / 2))
-        over = target is not None and number == 2
+        wanted = target if number == 2 else None
         if pieces is None:
-            _sheet(canvas, placing, rings, target if over else None)
+            _sheet(canvas, placing, rings, wanted)
         else:
-            _pieces(canvas, placing, pieces, rings, target if over else None)
+            _pieces(canvas, placing, pieces, rings, wanted)
         words = "flat" if number == 0 else f"{math.degrees(phi):.0f}°"
         canvas.text(left + width / 2, height + MARGIN + GAP + 16, words, "middle")
         left += width + GAP
@@ -162,7 +168,7 @@ class Thumbnail:
     """One design on a contact sheet: its motion, the target, and two lines of text."""
 
     design: PosedDesign
-    target: FloatArray | None
+    target: ShapeRings
     title: str
     details: str
 
@@ -181,7 +187,7 @@ def contact_sheet(cards: Sequence[Thumbnail], heading: str) -> str:
     for number, card in enumerate(shown):
         row, column = divmod(number, columns)
         rings = card.design.parts(card.design.phi_target)
-        cloud = np.concatenate(rings if card.target is None else [*rings, card.target])
+        cloud = np.concatenate([*rings, *as_rings(card.target)])
         x, y = MARGIN + column * cell + CARD / 2, MARGIN + GAP + row * tall + CARD / 2
         placing = Placing.of(cloud, CARD / float(np.ptp(cloud, axis=0).max()), (x, y))
         _sheet(canvas, placing, rings, card.target)
@@ -283,33 +289,32 @@ def _ticks(values: FloatArray) -> list[float]:
     return [round(number * step, 12) for number in range(first, last + 1)]
 
 
-def _sheet(canvas: SvgPicture, placing: Placing, rings: Sequence[FloatArray], target: FloatArray | None) -> None:
+def _sheet(canvas: SvgPicture, placing: Placing, rings: Sequence[FloatArray], target: ShapeRings) -> None:
     """Panels over a target, whose outline is repeated on top."""
-    if target is not None:
-        canvas.rings([placing(target)], fill=TARGET, fill_opacity="0.22")
+    wanted = [placing(ring) for ring in as_rings(target)]
+    canvas.rings(wanted, fill=TARGET, fill_opacity="0.22", fill_rule="evenodd")
     drawn = [placing(ring) for ring in rings]
     extent = np.ptp(np.concatenate(drawn), axis=0)
     # A twentieth of a panel: fine grids stay blue.
     line = min(max(0.05 * math.sqrt(float(extent.prod()) / len(drawn)), 0.3), 0.9)
     canvas.rings(drawn, fill=PANEL_FILL, stroke=PANEL_LINE, stroke_width=f"{line:.2f}")
-    if target is not None:
-        _target(canvas, placing(target), 1.6)
+    _target(canvas, wanted, 1.6)
 
 
 def _pieces(
-    canvas: SvgPicture, placing: Placing, pieces: PosedPieces, rings: Sequence[FloatArray], target: FloatArray | None
+    canvas: SvgPicture, placing: Placing, pieces: PosedPieces, rings: Sequence[FloatArray], target: ShapeRings
 ) -> None:
     """Pieces layer by layer, and the outline of their target on top."""
     for place, layer in enumerate(pieces.layers):
         face = hexadecimal(pieces.look.layer(place, len(pieces.layers)))
         drawn = [placing(rings[number]) for number in layer]
         canvas.rings(drawn, fill=face, stroke=hexadecimal(pieces.look.line), stroke_width="0.4")
-    if target is not None:
-        _target(canvas, placing(target), 1.6)
+    _target(canvas, [placing(ring) for ring in as_rings(target)], 1.6)
 
 
-def _target(canvas: SvgPicture, ring: FloatArray, width: float, filled: str = "0") -> None:
-    canvas.rings([ring], fill=TARGET, fill_opacity=filled, stroke=TARGET, stroke_width=f"{width:g}")
+def _target(canvas: SvgPicture, rings: Sequence[FloatArray], width: float, filled: str = "0") -> None:
+    look = {"fill": TARGET, "fill_opacity": filled, "fill_rule": "evenodd"}
+    canvas.rings(rings, **look, stroke=TARGET, stroke_width=f"{width:g}")
 
 
 def _room(heading: str) -> float:

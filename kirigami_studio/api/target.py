@@ -12,7 +12,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.api.pictures import target_picture
-from kirigami_studio.evaluate.silhouette import rasterise
+from kirigami_studio.evaluate.silhouette import RasterFrame, rasterise, rasterise_in_frame
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import MASK_SIZE
@@ -23,7 +23,7 @@ from kirigami_studio.studio.targets import PartChoice, outline_of
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Target:
-    """A silhouette that sheets are to show: closed, simple, of area 1 about its centroid.
+    """A silhouette that sheets are to show: closed, simple, of area 1 about its centroid, maybe with holes.
 
     In a notebook it shows itself.
 
@@ -41,12 +41,22 @@ class Target:
 
     @property
     def points(self) -> FloatArray:
-        """Vertices (L, 2), counter-clockwise, y up, area 1, centroid at the origin; read-only."""
+        """Vertices (L, 2) of the outer ring, counter-clockwise, y up, area 1, centroid at the origin; read-only."""
         return self.outline.points
 
     @property
     def polygon(self) -> Polygon:
-        """The same as a Shapely polygon."""
+        """The same as a Shapely polygon: what lies within the outer ring."""
+        return Polygon(self.points)
+
+    @property
+    def holes(self) -> tuple[FloatArray, ...]:
+        """Rings (H, 2) of what is missing within the outer ring, clockwise; read-only."""
+        return self.outline.holes
+
+    @property
+    def region(self) -> Polygon:
+        """The shape as a Shapely polygon with its holes."""
         return self.outline.polygon
 
     @property
@@ -56,7 +66,11 @@ class Target:
 
     def mask(self, size: int = MASK_SIZE) -> BoolArray:
         """Its picture (size, size), row 0 on top; the longer side fills it."""
-        return rasterise(self.points, size)
+        mask = rasterise(self.points, size)
+        frame = RasterFrame.around(self.points, size)
+        for hole in self.holes:
+            mask &= ~rasterise_in_frame(hole, frame)
+        return mask
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Target) and self.outline == other.outline
@@ -65,10 +79,11 @@ class Target:
         return hash(self.outline)
 
     def __repr__(self) -> str:
-        return f"<Target {self.name!r}: {len(self.points)} points>"
+        holes = {0: "", 1: ", 1 hole"}.get(len(self.holes), f", {len(self.holes)} holes")
+        return f"<Target {self.name!r}: {len(self.points)} points{holes}>"
 
     def _repr_svg_(self) -> str:
-        return target_picture(self.points, self.name)
+        return target_picture(self.outline.rings, self.name)
 
 
 #: What :func:`load_target` reads.
@@ -86,6 +101,7 @@ def load_target(
     threshold: float | None = None,
     object_at: Sequence[tuple[float, float]] | None = None,
     not_object_at: Sequence[tuple[float, float]] | None = None,
+    fill_holes: bool | None = None,
 ) -> Target:
     """Make a target of a library silhouette, a file, points, a mask or a Shapely geometry.
 
@@ -94,7 +110,7 @@ def load_target(
     source : str, path, array or geometry
         A name out of :func:`target_names`; an image, SVG, DXF, PDF, AI or JSON file; vertices (L, 2), y up; a mask
         (H, W), row 0 on top, of which is inside what is above half of its highest value; a polygon or several, of which
-        the largest piece counts, its holes filled.
+        the largest piece counts, with its holes.
     name : str, optional
         What it is called; by default as its source.
     parts : str, optional
@@ -111,6 +127,8 @@ def load_target(
     object_at, not_object_at : sequence of (x, y), optional
         Places on the object in a picture, which is taken instead of the largest shape, and places beside it; pixels
         from the upper left corner.
+    fill_holes : bool, optional
+        True fills all holes, False keeps all; by default those are filled around which only a line would stay.
 
     Raises
     ------
@@ -130,7 +148,7 @@ def load_target(
     if threshold is not None and not 0.0 < threshold < 1.0:
         raise UsageError("option.threshold", value=threshold)
     choice = PartChoice.of(parts, join, bridge, stroke, object_at, not_object_at)
-    outline = outline_of(source.outline if isinstance(source, Target) else source, choice, threshold)
+    outline = outline_of(source.outline if isinstance(source, Target) else source, choice, threshold, fill_holes)
     return Target(outline if name is None else replace(outline, name=str(name)))
 
 

@@ -24,6 +24,8 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
 
+#: How much of what the flat outline can spare pieces may stick out of it: the rest is for gaps that nothing fills.
+MOST_BEYOND = 0.7
 #: Width of a character of a label, in its heights.
 CHARACTER = 0.7
 
@@ -110,7 +112,7 @@ def pinned(
         spare = (1.0 - options.least_flat) * flat.area
         spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
         trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
-        spare -= extend_to(shaping, opened, closed, spare)
+        extend_to(shaping, opened, closed, MOST_BEYOND * spare)
         extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
         round_off(shaping, (opened, closed))
     assembly = assembled(shaping, deployment, cell_mm, phi)

@@ -264,11 +264,22 @@ class Shaping:
     @cached_property
     def pairs(self) -> IntArray:
         """Pairs (K, 2) of pieces of one plane that may come near each other; the second is passed."""
-        return self.motion.close_pairs(2.0 * (self.options.ear_mm + self.options.reach_mm) + self.options.clearance_mm)
+        return self.motion.close_pairs(
+            2.0 * self.options.ear_mm + 3.0 * self.options.reach_mm + self.options.clearance_mm
+        )
 
     @cached_property
     def _passing_ears(self) -> tuple[IntArray, IntArray]:
         """Ears, as flat indices of corners, and the panels of their plane that they may touch."""
+        return self._ears_near(self.options.reach_mm)
+
+    @cached_property
+    def _reached_ears(self) -> tuple[IntArray, IntArray]:
+        """The same with panels that are extended in both end states."""
+        return self._ears_near(3.0 * self.options.reach_mm)
+
+    def _ears_near(self, reach_mm: float) -> tuple[IntArray, IntArray]:
+        """Ears and panels of their plane, larger by a reach, that they may touch."""
         motion, options = self.motion, self.options
         one, other = self.pairs.T
         ear = (4 * one[:, None] + np.arange(4)).ravel()
@@ -278,7 +289,7 @@ class Shaping:
         ear, seen = ear[passing], seen[passing]
         middle = motion.corners.mean(axis=1)
         radius = np.abs(motion.corners - middle[:, None]).max(axis=1)
-        radius += options.ear_mm + options.clearance_mm + options.reach_mm
+        radius += options.ear_mm + options.clearance_mm + reach_mm
         apart = motion.distance_on_arc(middle[seen], motion.corners.ravel()[ear], ear // 4, seen)
         near = apart <= radius[seen]
         return ear[near], seen[near]
@@ -299,7 +310,7 @@ class Shaping:
     def _sweeps(self, index: int) -> tuple[IntArray, GeometryArray]:
         """Ears that may touch a panel, as flat indices of corners, and their sweeps (K, 3)."""
         if index not in self._swept:
-            mover, seen = self._passing_ears
+            mover, seen = self._reached_ears
             mover = mover[seen == index]
             self._swept[index] = mover, self._swept_ears(mover, np.full(len(mover), index))
         return self._swept[index]
@@ -518,7 +529,7 @@ def _areas(shape: BaseGeometry) -> BaseGeometry:
     if shape.geom_type in ("Polygon", "MultiPolygon"):
         return shape
     parts = shapely.get_parts(shape)
-    return shapely.union_all(parts[shapely.get_dimensions(parts) == 2])
+    return _overlay(shapely.union_all, parts[shapely.get_dimensions(parts) == 2])
 
 
 def _tidy(part: Polygon, least_hole: float) -> Polygon:

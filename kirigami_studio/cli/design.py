@@ -15,12 +15,14 @@ from kirigami_studio.cli.fabrication import material_settings, say_verdict
 from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
 from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto, setting_values
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.svg import write_layout_svg
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import Cancelled, ExportError, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.processes import Workers, ordered_results_of
@@ -32,6 +34,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.auto_grid import chosen_for
+from kirigami_studio.pipeline.auto_start import chosen_start
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
@@ -50,7 +53,15 @@ from kirigami_studio.settings.fabrication import (
 )
 from kirigami_studio.settings.layers import note_before_run
 from kirigami_studio.studio.as_cut import AsCut, jam_json
-from kirigami_studio.studio.designing import completed, document_of, request_for, run_design, why_untrimmed
+from kirigami_studio.studio.designing import (
+    completed,
+    document_of,
+    first_of_families,
+    request_for,
+    run_design,
+    why_covered,
+    why_untrimmed,
+)
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
@@ -119,7 +130,7 @@ def design(arguments: argparse.Namespace) -> int:
     def one_from_cluster(name: str, design: DesignOutcome) -> None:
         tell(name, design, design.save(folder_for(name)) if design.files else {})
 
-    inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments))
+    inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments), arguments.fill_holes)
     if arguments.scheduler:
         return for_each(
             _from_cluster(inputs, job_for, Workers(scheduler=arguments.scheduler)),
@@ -279,12 +290,15 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
         "candidates": entries,
         "best": entries[0],
         "construction": construction.value,
-        "target_outline": [result.request.target.points.tolist()],
+        "target_outline": [ring.tolist() for ring in result.request.target.rings],
+        "target_holes": len(result.request.target.holes),
         "seconds": result.seconds,
         "forward_evaluations": result.forward_evaluations,
     }
     if result.request.grid_chosen:
         answer["grid"], answer["grid_reason"] = list(result.request.chosen_grid), chosen_for(result.request).reason
+    if result.request.start_chosen:
+        answer["start_choice"] = {"name": result.request.start.name, "reason": chosen_start(result.request).reason}
     if not result.request.start.is_plain:
         sheet = result.best.sheet
         answer["start"] = {
@@ -304,6 +318,13 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
         }
     if result.best.trim is not None:
         answer["trimmed_iou"] = result.best.trim.iou
+    answer["families"] = {
+        family.value: {"place": place, "match": one.match, "given_up": one.given_up}
+        for family, (place, one) in first_of_families(result.candidates).items()
+    }
+    why = why_covered(result.candidates, result.request.target, result.request.start)
+    if why is not None:
+        answer["why_covered"] = {"code": why.code, "text": why.text}
     if result.request.budget_seconds is not None:
         answer["budget_ended"] = result.budget_ended
     return answer
@@ -311,7 +332,7 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
 
 def candidates_json(result: Result, construction: Construction) -> list[dict[str, object]]:
     """The entries of ``candidates``, best first, each with its rank's reason and its group."""
-    kind = {"family": "closed", "construction": construction.value}
+    kind = {"construction": construction.value}
     ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
@@ -340,7 +361,8 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
         "at_limit": even.at_limit,
         "cuttable": ranking.cuttable(candidate),
         "as_cut": as_cut.to_json() if isinstance(as_cut, AsCut) else None,
-        "outline": [candidate.score.transform.apply(deploy(candidate.sheet).outline(candidate.score.phi)).tolist()],
+        "family": candidate.family.value,
+        "outline": [ring.tolist() for ring in _silhouette(candidate)],
     }
     if candidate.second is not None:
         match = candidate.second.match
@@ -348,7 +370,16 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
     if candidate.trim is not None:
         cut = sheet_json(candidate.trim.sheet)
         entry |= {"trimmed_iou": candidate.trim.iou, "trimmed_ratio": cut["ratio"], "trimmed_rim": cut["rim"]}
+        entry["given_up"] = candidate.given_up
     return entry
+
+
+def _silhouette(candidate: Candidate) -> list[FloatArray]:
+    """Rings (P, 2) of what a design shows, in the frame of the target."""
+    motion, pose, phi = deploy(candidate.final_sheet), candidate.final_pose, candidate.final_phi
+    if candidate.trim is None:
+        return [pose.apply(motion.outline(phi))]
+    return PosedDesign(motion, pose, phi, candidate.trim).silhouette(phi)
 
 
 def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dict[str, str]]:
@@ -429,6 +460,8 @@ def _folder_name(name: str, used: set[str]) -> str:
 
 def _say_result(target: Outline, result: Result, files: dict[str, str], verdict: Verdict) -> None:
     score, trim = result.best.score, result.best.trim
+    if result.request.start_chosen:
+        say(f"{target.name}: {chosen_start(result.request).reason}")
     if result.request.grid_chosen:
         say(f"{target.name}: {chosen_for(result.request).reason}")
     best = tr_n(
@@ -476,6 +509,9 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
         )
     (reason, *_) = result.ranking.reasons(result.candidates)
     say(f"{target.name}: {reason.text}")
+    why = why_covered(result.candidates, target, result.request.start)
+    if why is not None:
+        say(f"{target.name}: {why.text}")
     if trim is not None:
         say(
             tr(

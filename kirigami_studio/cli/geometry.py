@@ -174,7 +174,7 @@ def score(arguments: argparse.Namespace) -> int:
         raise UsageError("score.nothing_to_score")
     phi = target_angle(arguments.phi)
     sheets = list(read_sheets(sheet_sources))
-    targets = list(read_targets([target_source], choice=part_choice(arguments)))
+    targets = list(read_targets([target_source], choice=part_choice(arguments), fill_holes=arguments.fill_holes))
     if 1 not in (len(sheets), len(targets)) and len(sheets) != len(targets):
         raise UsageError("score.numbers_differ", sheets=len(sheets), targets=len(targets))
     pairs = max(len(sheets), len(targets))
@@ -186,7 +186,7 @@ def score(arguments: argparse.Namespace) -> int:
         sheet, target = pair
         outline = target.read()
         result = evaluate(deploy(sheet), outline, phi)
-        answer = result.to_json() | {"warnings": warn(target.name, outline)}
+        answer = result.to_json() | {"target_holes": len(outline.holes), "warnings": warn(target.name, outline)}
         if batch:
             print_json({"source": name, "target": target.name} | answer)
         elif arguments.json:

@@ -121,13 +121,26 @@ def warn(name: str, target: Outline) -> list[str]:
 
 
 def read_targets(
-    sources: Sequence[str], threshold: float | None = None, choice: PartChoice | None = None
+    sources: Sequence[str],
+    threshold: float | None = None,
+    choice: PartChoice | None = None,
+    fill_holes: bool | None = None,
 ) -> Iterator[Named[Outline]]:
     """Yield every target that the sources name, in order.
 
     ``threshold`` (grey level, 0..1) replaces the automatic one for images that are named singly; a ``choice`` is that
-    of parts, for drawings.
+    of parts, for drawings.  All holes are filled, or none, where ``fill_holes`` says so.
     """
+    for named in _targets(sources, threshold, choice):
+        yield Named(named.name, partial(_with_holes, named.read, fill_holes))
+
+
+def _with_holes(read: Callable[[], Outline], filled: bool | None) -> Outline:
+    return read().with_holes(filled)
+
+
+def _targets(sources: Sequence[str], threshold: float | None, choice: PartChoice | None) -> Iterator[Named[Outline]]:
+    """The targets with the holes that are seen as such."""
     if threshold is not None and not 0.0 < threshold < 1.0:
         raise UsageError("option.threshold", value=threshold)
     for source in sources:

@@ -94,13 +94,16 @@ PARTS = (
            help="parts of an SVG, DXF or picture: all, largest, or names, numbers, layers or colours, joined by commas "
                 "(default: what is filled or enclosed, of several pieces the largest); 'kirigami-studio parts' lists "
                 "them"),
-    option("--object", type=places, default=None, metavar="X,Y",
+    option("--object", type=places, action="extend", default=None, metavar="X,Y",
            help="a place on the object in a picture, or several ('120,80 200,95'), pixels from the upper left corner"),
-    option("--not-object", type=places, default=None, metavar="X,Y",
+    option("--not-object", type=places, action="extend", default=None, metavar="X,Y",
            help="a place that does not belong to it, such as its shadow, or several"),
     option("--join", choices=[join.value for join in Join], default=None,
            help="how parts become one outline: union of what touches, bridges between nearest places, convex hull, or "
                 "a tight hull (default union; all parts with the others)"),
+    option("--fill-holes", action=argparse.BooleanOptionalAction, default=None,
+           help="fill the holes of the target, or keep all of them (default: holes are kept, but for those around "
+                "which only a line would stay)"),
     option("--bridge", type=positive, default=None, metavar="WIDTH",
            help="width of bridges in the file's unit (default 4 %% of the size); alone, as --join bridge"),
     option("--stroke-outline", type=positive, nargs="?", const=0, default=None, metavar="WIDTH",
@@ -113,8 +116,9 @@ START = option(
     "--start",
     default="rectangle",
     metavar="SHAPE",
-    help="shape of the flat sheet: rectangle, square, rectangle:W:H, circle, ellipse:W:H, triangle, hexagon, "
-    "polygon:N, a file or library name of a shape, hollows and all (default rectangle)",
+    help="shape of the flat sheet: auto (a rectangle, or what short fits find better), rectangle, square, "
+    "rectangle:W:H, circle, ellipse:W:H, triangle, hexagon, polygon:N, gable, notch, a file or library name of a "
+    "shape, hollows and all (default rectangle)",
 )
 #: How firmly they keep that.
 (START_WEIGHT,) = setting_options(StartShape)
@@ -199,7 +203,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("export", "write a project as a cut file or picture", "fabrication:export", (
         option("project", help="a .kiri project"),
         option("--out", required=True,
-               help="file to write (.dxf .svg .pdf .lbrn2 .png .gif .html .stl .3mf .obj); with --all, a folder"),
+               help="file to write (.dxf .svg .pdf .lbrn2 .png .gif .html .stl .3mf .obj .fold .xml .csv); with "
+                    "--all, a folder"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
         option("--as-cut", action="store_true",
                help="pictures (.png .gif, and those of --all) show the sheet on the connectors of its planned cuts, as "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from dataclasses import field as attribute
-from enum import Enum
+from enum import Enum, StrEnum
 
 from kirigami_studio.evaluate.pins import least_gap_of
 from kirigami_studio.evaluate.score import Score
@@ -23,6 +23,14 @@ class Origin(Enum):
     SEARCHED = "searched"  #: found by the search that follows the samples
     RESAMPLED = "resampled"  #: by the generator near another design
     EDITED = "edited"  #: changed by hand
+    COVERED = "covered"  #: fitted to cover the target, so that what sticks out of it is cut away
+
+
+class Family(StrEnum):
+    """How a design shows its target; the values stand on the command line."""
+
+    CLOSED = "closed"  #: by the whole sheet
+    COVER = "cover"  #: by a sheet that covers it, of which parts are cut away
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +57,21 @@ class Candidate:
     def symmetry(self) -> Symmetry | None:
         """The largest symmetry that the sheet has."""
         return symmetry_of(self.sheet)
+
+    @property
+    def family(self) -> Family:
+        """How it shows the target."""
+        return Family.CLOSED if self.trim is None else Family.COVER
+
+    @property
+    def match(self) -> float:
+        """Exact IoU, 0..1, of what is shown and cut: trimmed, if it is."""
+        return self.score.iou_exact if self.trim is None else self.trim.iou
+
+    @property
+    def given_up(self) -> float:
+        """Share of the flat sheet's area, 0..1, that is cut away."""
+        return 0.0 if self.trim is None else self.trim.removed_share
 
     @property
     def least_gap(self) -> float:

@@ -111,9 +111,11 @@ def measured(panels: GeometryArray, common: GeometryArray, shapes: GeometryArray
     return KeptPanels(shapes, removed, np.maximum(lost, 0.0))
 
 
-def polygons(corners: FloatArray) -> GeometryArray:
-    """Polygons (E,) with the given vertices (E, P, 2), snapped to the grid."""
-    snapped: GeometryArray = shapely.set_precision(np.asarray(shapely.polygons(corners), dtype=object), GRID)
+def polygons(corners: FloatArray, holes: Sequence[FloatArray] = ()) -> GeometryArray:
+    """Polygons (E,) with the given vertices (E, P, 2) and holes (E, H, 2), snapped to the grid."""
+    inner = np.stack([shapely.linearrings(hole) for hole in holes], axis=1) if holes else None
+    made = shapely.polygons(corners if inner is None else shapely.linearrings(corners), inner)
+    snapped: GeometryArray = shapely.set_precision(np.asarray(made, dtype=object), GRID)
     return snapped
 
 

@@ -39,6 +39,8 @@ from kirigami_studio.foundation.errors import KirigamiError
 
 #: What sticks out counts so much more than what is missed: strips around hinges look worse than a short edge.
 STICKING_OUT = 1.5
+#: What lies farther off a target with holes than ``keep`` counts so much more: hooks that reach into a hole.
+FAR_OFF = 6.0
 #: Voids whose panels lie on the target by this share stay at first.
 MOSTLY = 0.5
 #: A change has to gain this (unit cells squared), and so often all voids along the boundary are looked at.
@@ -69,6 +71,7 @@ def deep_cut(
     void_gain: FloatArray,
     keep: float,
     images: IntArray | None = None,
+    open_inside: bool = False,
 ) -> tuple[KeptPanels, BoolArray]:
     """Trim all panels of a sheet to a target, and give up those that lie in its notches.
 
@@ -86,6 +89,8 @@ def deep_cut(
         Depth of the material that stays at every hinge that does.
     images : (G, m n) int, optional
         For each move of the sheet's symmetry, the void that each void is the image of.
+    open_inside : bool
+        Whether what is cut out may have no way out: a target with holes.
 
     Returns
     -------
@@ -99,11 +104,12 @@ def deep_cut(
     KirigamiError
         No void lies mostly on the target.
     """
-    cut = _NotchCut(corners, targets, slits, void_gain, keep)
+    cut = _NotchCut(corners, targets, slits, void_gain, keep, open_inside)
     voids = cut.first()
     if not voids.any():
         raise KirigamiError("trim.nothing_left")
-    voids = cut.opened(cut.improved(voids, images), images)
+    voids = cut.improved(voids, images)
+    voids = voids if open_inside else cut.opened(voids, images)
     return cut.parts(voids), voids
 
 
@@ -121,22 +127,36 @@ class _NotchCut:
     """One sheet over its target: what every panel is worth with some of its hinges."""
 
     def __init__(
-        self, corners: FloatArray, targets: GeometryArray, slits: FloatArray, void_gain: FloatArray, keep: float
+        self,
+        corners: FloatArray,
+        targets: GeometryArray,
+        slits: FloatArray,
+        void_gain: FloatArray,
+        keep: float,
+        open_inside: bool,
     ) -> None:
         self._rows, self._columns = void_gain.shape
         self._corners, self._targets, self._void_gain, self._keep = corners, targets, void_gain, keep
-        self._slits = slits
+        self._slits, self._open_inside = slits, open_inside
         self._panels = polygons(corners)
         self._common = shared_parts(self._panels, targets)
         self._area, self._inside = shapely.area(self._panels), shapely.area(self._common)
         self._known: dict[tuple[int, bytes], tuple[float, BaseGeometry | None]] = {}
 
     def first(self) -> BoolArray:
-        """The largest set of voids that mostly lie on the target, without holes."""
+        """The largest set of voids mostly on the target, without holes unless they may be open."""
         mostly = _largest(self._shares() >= MOSTLY)
+        if self._open_inside:
+            return mostly
         outside, _ = _labelled(np.pad(~mostly, 1, constant_values=True), EIGHT_WAYS)
         whole: BoolArray = outside[1:-1, 1:-1] != outside[0, 0]
         return whole
+
+    def _is_one(self, voids: BoolArray) -> bool:
+        """Whether voids hang together by hinges, and so does all around them unless it may be open."""
+        if _labelled(voids)[1] != 1:
+            return False
+        return self._open_inside or _labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)[1] == 1
 
     def _shares(self) -> FloatArray:
         """Part of the panels around each void that lies on the target: (m, n)."""
@@ -153,7 +173,7 @@ class _NotchCut:
             for void in np.flatnonzero(near):
                 other = voids.copy()
                 other.flat[orbits[void]] = not voids.flat[void]
-                if _is_one(other) and self._gain(voids, other, orbits[void]) > LEAST_GAIN:
+                if self._is_one(other) and self._gain(voids, other, orbits[void]) > LEAST_GAIN:
                     voids, changed = other, True
             if not changed:
                 break
@@ -167,7 +187,7 @@ class _NotchCut:
             tried.add(more[0])
             other = best.voids.copy()
             other.flat[orbits[more[0]]] = False
-            if _is_one(other):
+            if self._is_one(other):
                 draft = self._draft(other, _hinges_of(other))
                 best = draft if draft.worth > best.worth + LEAST_GAIN else best
         return best.voids
@@ -187,7 +207,7 @@ class _NotchCut:
         shapes = np.empty(len(self._panels), dtype=object)
         shapes[:] = [self._part(k, hinged[k])[1] for k in range(len(hinged))]
         worth = sum(self._part(k, hinged[k])[0] for k in range(len(hinged))) + float(self._void_gain[voids].sum())
-        notches = enclosed(self._present(shapes))
+        notches = [] if self._open_inside else enclosed(self._present(shapes))
         if notches:
             self._open_ways_out(shapes, hinged, ~voids, notches)
             notches = [notch for notch in enclosed(self._present(shapes)) if notch.area > WORTH_OPENING]
@@ -209,8 +229,11 @@ class _NotchCut:
         panels = np.unique(np.concatenate(beside))
         changes = self._void_gain.flat[np.unique(orbit)].sum() * (1.0 if after.flat[orbit[0]] else -1.0)
         old, new = _hinges_of(before), _hinges_of(after)
-        changes += sum(self._part(k, new[k])[0] - self._part(k, old[k])[0] for k in panels.tolist())
-        return float(changes)
+        changes -= sum(self._part(k, old[k])[0] for k in panels.tolist())
+        most = float(changes + self._inside[panels[new[panels].any(axis=1)]].sum())
+        if most <= LEAST_GAIN:  # no panel is worth more than its part on the target, so no part has to be made
+            return most
+        return float(changes + sum(self._part(k, new[k])[0] for k in panels.tolist()))
 
     def _part(self, k: int, hinged: BoolArray) -> tuple[float, BaseGeometry | None]:
         """What a panel with these hinges adds to the silhouette's worth, and what stays of it."""
@@ -227,7 +250,10 @@ class _NotchCut:
             shape = kept_part(self._panels[k], self._common[k], self._corners[k], hinged, self._keep)
         if shape is not None:
             area, shared = float(shape.area), float(shape.intersection(self._common[k]).area)
-        return shared - STICKING_OUT * (area - shared), shape
+        far = 0.0
+        if self._open_inside and shape is not None:
+            far = float(shape.difference(shapely.buffer(self._targets[k], self._keep)).area)
+        return shared - STICKING_OUT * (area - shared) - FAR_OFF * far, shape
 
     def parts(self, voids: BoolArray) -> KeptPanels:
         """What stays of all panels with these voids.
@@ -243,7 +269,9 @@ class _NotchCut:
             hinged[one] |= back
             hinged[other] |= back
             shapes = self._draft(voids, hinged).shapes
-            kept = with_pockets(measured(self._panels, self._common, shapes), self._corners, self._targets, NOTHING)
+            kept = measured(self._panels, self._common, shapes)
+            if not self._open_inside:
+                kept = with_pockets(kept, self._corners, self._targets, NOTHING)
             reached = self._reached(self._present(kept.shapes))
             if not np.any(reached[one] & reached[other] & ~hinged[one]):
                 break
@@ -297,12 +325,6 @@ def _hinge_pairs(rows: int, columns: int) -> tuple[tuple[IntArray, IntArray], tu
     panel = np.concatenate([above, left])
     neighbour = np.concatenate([above - columns - 1, left - 1])
     return (panel, corner), (neighbour, corner + 2)
-
-
-def _is_one(voids: BoolArray) -> bool:
-    """Whether voids are connected from hinge to hinge, and so is what lies around them: one outline."""
-    _, around = _labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)
-    return _labelled(voids)[1] == 1 and around == 1
 
 
 def _labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArray, int]:

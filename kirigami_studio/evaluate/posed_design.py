@@ -16,6 +16,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import GRID
@@ -107,6 +108,18 @@ class PosedDesign:
         boundary: FloatArray = nodes[tables.outline_at_zero if zipped else tables.outline_nodes]
         return boundary
 
+    def silhouette(self, phi: float) -> list[FloatArray]:
+        """Rings (P, 2) of what is shown at angle ``phi``, world: the outer one, then those of holes; voids filled."""
+        nodes = self.nodes(phi)
+        outline = self.outline(nodes, phi)
+        removed = self.removed(nodes, phi)
+        if not removed:
+            return [outline]
+        cut = shapely.union_all(polygons_of(removed), grid_size=GRID)
+        left = shapely.get_parts(shapely.difference(shapely.Polygon(outline), cut, grid_size=GRID))
+        largest = shapely.orient_polygons(max(left, key=lambda part: float(part.area)))
+        return [shapely.get_coordinates(ring)[:-1] for ring in (largest.exterior, *largest.interiors)]
+
     def to_world(self, places: npt.ArrayLike, phi: float) -> FloatArray:
         """Map places (..., 2) of the layout frame at ``phi`` to the world."""
         return self.pose_at(phi).apply(places)
@@ -163,6 +176,35 @@ def _placed_nodes(design: PosedDesign, phi: float) -> FloatArray:
 def trimmed_parts(deployment: Deployment, trim: Trim) -> TrimmedParts:
     """Both sides of a trim: 10 ms for 40 trimmed panels, so they are divided when a design is decoded, and kept."""
     return TrimmedParts.of(deployment, trim)
+
+
+def covered(
+    sheet: FloatArray, target: shapely.Polygon, removed: Sequence[FloatArray] = (), voids: FloatArray | None = None
+) -> BaseGeometry:
+    """The area within the outline of a sheet (L, 2), crossings and all, but for what was cut off.
+
+    Parameters
+    ----------
+    removed : sequence of (P, 2) float, world
+        What was cut off.
+    voids : (V, 4, 2) float, world, optional
+        They count as covered, but for those beside the target that a cut has opened.
+    """
+    area: BaseGeometry = shapely.Polygon(sheet)
+    if not area.is_valid:
+        area = shapely.make_valid(area)
+    if not removed:
+        return area
+    off = shapely.union_all(polygons_of(removed), grid_size=GRID)
+    parts = shapely.get_parts(area)  # of a sheet that touches itself lines may be left over
+    area = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
+    area = shapely.difference(area, off, grid_size=GRID)
+    if voids is not None:
+        openings = shapely.polygons(voids)
+        beside = shapely.area(shapely.intersection(openings, target)) < 0.5 * shapely.area(openings)
+        lost = openings[beside & shapely.intersects(openings, off.buffer(10.0 * GRID))]
+        area = shapely.difference(area, shapely.union_all(lost, grid_size=GRID), grid_size=GRID)
+    return area
 
 
 def polygons_of(rings: Sequence[FloatArray]) -> npt.NDArray[np.object_]:

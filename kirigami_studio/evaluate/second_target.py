@@ -29,6 +29,7 @@ class SecondTarget:
     Attributes
     ----------
     outline : Outline
+        Its holes are filled.
     phi : float, radians, above 0 and below pi
         Angle at which the sheet should show it.
     weight : float, above 0, up to 4
@@ -87,6 +88,7 @@ class SecondTarget:
 
     def __post_init__(self) -> None:
         check(self)
+        object.__setattr__(self, "outline", self.outline.filled)  # a sheet on its way has none of the target's holes
 
     def check_on_the_way_to(self, phi: float) -> None:
         """Refuse a second target that the sheet does not pass before it is at ``phi`` (radians).

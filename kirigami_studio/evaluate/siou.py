@@ -49,6 +49,21 @@ def siou_of_many(shapes: Sequence[FloatArray], target: Outline) -> list[ShapeMat
     return _matches(shapes, target, align_many(shapes, target.points))
 
 
+def iou_of_area(area: shapely.Polygon, target: Outline) -> float:
+    """Exact IoU of an area in its best pose, open where that is mostly a hole of the target."""
+    ring = shapely.get_coordinates(area.exterior)[:-1]
+    (match,) = siou_of_many([ring], target)
+    if not target.holes:
+        return match.iou_exact
+    laid = shapely.transform(area, match.transform.apply)
+    openings = np.array([shapely.Polygon(opening) for opening in laid.interiors], dtype=object)
+    missing = shapely.difference(shapely.Polygon(target.points), target.polygon)
+    mostly = shapely.area(shapely.intersection(openings, missing)) > 0.5 * shapely.area(openings)
+    shown = shapely.Polygon(laid.exterior).difference(shapely.union_all(openings[mostly]))
+    common = float(shown.intersection(target.polygon).area)
+    return common / (float(shown.area) + target.polygon.area - common)
+
+
 def siou_near(shape: FloatArray, target: Outline, pose: Similarity) -> ShapeMatch:
     """The same of one silhouette (L, 2), under the best similarity that is found from ``pose`` on uphill."""
     return _matches([shape], target, [align_near(shape, target.points, pose)])[0]
@@ -70,16 +85,18 @@ def _matches(shapes: Sequence[FloatArray], target: Outline, transforms: Sequence
     if not transforms:
         return []
     laid = np.stack([transform.apply(shape) for transform, shape in zip(transforms, shapes, strict=True)])
-    found = zip(aligned_sious(laid, target.points), exact_ious(laid, target), transforms, strict=True)
+    found = zip(aligned_sious(laid, target.points, target.holes), exact_ious(laid, target), transforms, strict=True)
     return [ShapeMatch(float(siou), float(exact), transform) for siou, exact, transform in found]
 
 
-def aligned_sious(laid: FloatArray, target: FloatArray) -> FloatArray:
-    """The sIoU of silhouettes (B, L, 2) that lie on the target (K, 2) as they should: (B,)."""
+def aligned_sious(laid: FloatArray, target: FloatArray, holes: Sequence[FloatArray] = ()) -> FloatArray:
+    """The sIoU (B,) of silhouettes (B, L, 2) laid on the target (K, 2) less its holes."""
     frame = RasterFrame.around(target)
     masks, (row, column) = filled_in_frame(as_plane(laid), frame)
     still = np.zeros(masks.shape[1:], dtype=np.bool_)
     still[row : row + frame.rows, column : column + frame.columns] = rasterise_in_frame(target, frame)
+    for hole in holes:
+        still[row : row + frame.rows, column : column + frame.columns] &= ~rasterise_in_frame(hole, frame)
     return raster_iou(masks, still)
 
 

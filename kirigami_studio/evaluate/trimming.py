@@ -20,6 +20,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import (
     GRID,
+    GeometryArray,
     KeptPanels,
     PanelTable,
     all_panels,
@@ -40,13 +41,29 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
 KEEP = 0.15
+#: A hole of which less is open counts as closed; and below this area (unit cells squared) that is for its size.
+MOSTLY_OPEN, SMALL_HOLE = 0.5, 1.0
 #: Between these depths hinges hold and panels can still be trimmed.
 SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
 
 @dataclass(frozen=True, slots=True)
+class TrimmedHole:
+    """How a trimmed design shows a hole of its target."""
+
+    open: float  #: 0..1; share of it that is open
+    cells: float  #: its area, unit cells squared
+    place: tuple[float, float]  #: (x, y), unit cells; in the compact sheet, where most of it is covered
+
+    @property
+    def is_small(self) -> bool:
+        """Whether it is smaller than the panels around it."""
+        return self.cells < SMALL_HOLE
+
+
+@dataclass(frozen=True, slots=True)
 class Trim:
-    """A trimmed design; two are equal when sheet, angle, pose and depth are, because the rest follows from them."""
+    """A trimmed design, equal to another of the same sheet, angle, pose, depth and match."""
 
     sheet: Sheet
     phi: float  #: radians; the angle at which the panels were cut
@@ -56,14 +73,20 @@ class Trim:
     #: tuple of (P, 2) float or None, unit cells; what stays of every panel, row by row, in the compact sheet's frame,
     #: counter-clockwise; None for a whole one, no points for one that was given up.
     kept: tuple[FloatArray | None, ...] = attribute(compare=False, repr=False)
-    iou: float = attribute(compare=False)  #: 0..1; exact IoU of the trimmed silhouette with the target
+    iou: float  #: 0..1; exact IoU of the trimmed silhouette with the target
     untrimmed_iou: float = attribute(compare=False)  #: 0..1; the same of the whole silhouette in the same pose
     removed_share: float = attribute(compare=False)  #: 0..1; removed part of the sheet's area
+    holes: tuple[TrimmedHole, ...] = attribute(default=(), compare=False)  #: those of the target, in its order
 
     @property
     def given_up(self) -> int:
         """Number of panels of which nothing stays."""
         return sum(part is not None and not len(part) for part in self.kept)
+
+    @property
+    def closed_holes(self) -> tuple[TrimmedHole, ...]:
+        """Holes of the target that stay closed for the most part."""
+        return tuple(hole for hole in self.holes if hole.open < MOSTLY_OPEN)
 
 
 def trim(
@@ -97,7 +120,8 @@ def trim(
     silhouette = Polygon(deployment.outline(phi))
     if not silhouette.is_valid:
         raise KirigamiError("trim.crosses_itself")
-    place = Polygon(pose.inverse().apply(target.points))
+    deep = deep or bool(target.holes)
+    place: Polygon = shapely.transform(target.polygon, pose.inverse().apply)
     shared, parts = silhouette.intersection(place).area, _deep_parts if deep else _edge_parts
     cut = parts(deployment, place, phi, keep)
     kept: list[FloatArray | None] = [None] * deployment.topology.panel_nodes[..., 0].size
@@ -116,6 +140,7 @@ def trim(
         iou=float(both / (place.area + silhouette.area - removed - cut.open_area - both)),
         untrimmed_iou=float(shared / (silhouette.area + place.area - shared)),
         removed_share=removed / deployment.area(math.pi),
+        holes=cut.holes,
     )
 
 
@@ -130,13 +155,14 @@ class _Parts:
     kept: KeptPanels
     open_area: float = 0.0
     open_shared: float = 0.0
+    holes: tuple[TrimmedHole, ...] = ()
 
 
 def _edge_parts(deployment: Deployment, place: Polygon, phi: float, keep: float) -> _Parts:
     """The panels at the edge cut along the target, all hinges kept."""
     panels = edge_panels(deployment.field.rows, deployment.field.columns)
     corners = deployment.compact[panels.corners]
-    targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
+    targets = _brought_back(deployment, panels, phi, place)
     kept = kept_panels(corners, panels.hinged, targets, keep)
     return _Parts(panels.index, with_pockets(kept, corners, targets, _inside(deployment, panels)))
 
@@ -145,7 +171,7 @@ def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float)
     """All panels cut along the target, those in its notches given up."""
     grid = deployment.field.rows, deployment.field.columns
     panels = all_panels(*grid)
-    targets = polygons(as_points(_brought_back(deployment, panels, phi, shapely.get_coordinates(place)[:-1])))
+    targets = _brought_back(deployment, panels, phi, place)
     tables = deployment.topology
     voids = polygons(deployment.nodes(phi)[tables.void_nodes].reshape(-1, 4, 2))
     ends = np.where(tables.even_void[..., None], tables.void_nodes[..., [3, 1]], tables.void_nodes[..., [0, 2]])
@@ -153,9 +179,26 @@ def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float)
     symmetry = symmetry_of(deployment.sheet)
     images = None if symmetry is None else symmetry.on(*grid).source[:, : area.size]
     gain = shared - STICKING_OUT * (area - shared)
-    kept, stay = deep_cut(deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images)
+    open_inside = bool(place.interiors)
+    kept, stay = deep_cut(
+        deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images, open_inside
+    )
     left_out = ~stay
-    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()))
+    shown = (voids[stay.ravel()], kept)
+    holes = tuple(_trimmed_hole(deployment, panels, phi, Polygon(hole), *shown) for hole in place.interiors)
+    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()), holes)
+
+
+def _trimmed_hole(
+    deployment: Deployment, panels: PanelTable, phi: float, hole: Polygon, voids: GeometryArray, kept: KeptPanels
+) -> TrimmedHole:
+    """How much of a hole the kept panels and the voids between them leave open."""
+    whole = polygons(deployment.compact[panels.corners])
+    parts = np.where([shape is None for shape in kept.shapes], whole, kept.shapes)
+    common = shapely.area(shapely.intersection(parts, _brought_back(deployment, panels, phi, hole)))
+    covered = float(common.sum() + shapely.area(shapely.intersection(voids, hole)).sum())
+    middle = whole[int(np.argmax(common))].centroid
+    return TrimmedHole(1.0 - covered / hole.area, float(hole.area), (float(middle.x), float(middle.y)))
 
 
 def check_keep(keep: float) -> float:
@@ -182,13 +225,17 @@ def _turn(even: BoolArray, phi: float) -> ComplexArray:
     return turn
 
 
-def _brought_back(deployment: Deployment, panels: PanelTable, phi: float, points: FloatArray) -> ComplexArray:
-    """Points (T, 2) of the layout's frame at ``phi``, carried to the compact sheet with each edge panel: (E, T)."""
+def _brought_back(deployment: Deployment, panels: PanelTable, phi: float, place: Polygon) -> GeometryArray:
+    """The target (E,) as each panel carries it from the layout at ``phi`` to the compact sheet."""
     anchors = panels.corners[:, 0]
     start, end = as_plane(deployment.nodes(phi))[anchors], as_plane(deployment.compact)[anchors]
     back = np.conj(_turn(panels.even, phi))
-    carried: ComplexArray = (as_plane(points) - start[:, None]) * back[:, None] + end[:, None]
-    return carried
+
+    def carried(ring: BaseGeometry) -> FloatArray:
+        points = as_plane(shapely.get_coordinates(ring)[:-1])
+        return as_points((points - start[:, None]) * back[:, None] + end[:, None])
+
+    return polygons(carried(place.exterior), [carried(hole) for hole in place.interiors])
 
 
 def _inside(deployment: Deployment, panels: PanelTable) -> BaseGeometry:

@@ -25,7 +25,7 @@ from kirigami_studio.export.picture import (
     shown_points,
 )
 from kirigami_studio.export.provenance import origin_facts
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.mechanics.closing import TOLERATED_STRETCH
@@ -102,7 +102,7 @@ def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Im
     # The ideal motion decides what part of the plane is shown.
     poses = [design.parts(angle) for angle in angles]
     clouds = [np.concatenate(panels) for panels in poses]
-    box = PictureFrame.around(clouds if job.target is None else [*clouds, job.target], longest)
+    box = PictureFrame.around([*clouds, *as_rings(job.target)], longest)
     if motion is None:
         pictures = [draw_polygons(panels, box, job.target) for panels in poses]
     else:
@@ -121,9 +121,7 @@ def _with_one_palette(pictures: list[Image.Image], captioned: bool) -> list[Imag
     return [picture.quantize(palette=shared, dither=Image.Dither.NONE) for picture in pictures]
 
 
-def _as_cut(
-    design: PosedDesign, target: FloatArray | None, motion: CutMotion, phi: float, box: PictureFrame
-) -> Image.Image:
+def _as_cut(design: PosedDesign, target: ShapeRings, motion: CutMotion, phi: float, box: PictureFrame) -> Image.Image:
     """One frame of the sheet as cut: panels, connectors that stop it, and the caption."""
     pose = motion.pose(design, phi)
     image = draw_polygons(pose.panels, box, target, pose.cuts)

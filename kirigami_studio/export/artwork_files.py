@@ -34,7 +34,7 @@ from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.provenance import facts_of
 from kirigami_studio.export.strokes import extent, frame_origin, strokes_of
 from kirigami_studio.export.svg import NAMESPACE, decimals, path_data, root_element, svg_content
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, as_rings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.units import MM_PER_INCH
@@ -210,17 +210,14 @@ def opened_image(work: ArtworkJob) -> Image.Image:
     width = float(np.ptp(sheet.corners[..., 0]))
     patches = opened_patches(work.artwork, sheet, sheet.design.phi_target, OPENED_OVERLAP * width)
     clouds = [np.array(patch.region.bounds).reshape(2, 2) for patch in patches]
-    target = None
-    if sheet.target is not None:
-        target = np.asarray(sheet.target) * sheet.design.mm_per_world(width)
-        clouds.append(target)
-    points = np.concatenate(clouds)
+    target = [ring * sheet.design.mm_per_world(width) for ring in as_rings(sheet.target)]
+    points = np.concatenate([*clouds, *target])
     low, high = points.min(axis=0) - OPENED_MARGIN_MM, points.max(axis=0) + OPENED_MARGIN_MM
     dpi = OPENED_SIDE / float((high - low).max()) * MM_PER_INCH
     page = BitmapFrame((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), dpi)
     image = paint(patches, page, (*PAPER, 255))
-    if target is not None:
-        ring = page.to_pixels(np.concatenate([target, target[:1]])) - 0.5
+    for line in target:
+        ring = page.to_pixels(np.concatenate([line, line[:1]])) - 0.5
         ImageDraw.Draw(image).line([tuple(point) for point in ring.tolist()], fill=(*TARGET_EDGE, 255), width=2)
     return image.convert("RGB")
 

@@ -21,7 +21,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign, polygons_of
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, SheetState
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.fabricate.panel_sizes import panels_in_mm
-from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, ShapeRings, as_rings
 from kirigami_studio.foundation.errors import ExportError
 
 #: Panels overlap under the next one by half a kerf, and by this (mm) at least, so that no paper shines through.
@@ -40,7 +40,7 @@ class PrintedSheet:
     """A sheet as it is printed and as it opens."""
 
     design: PosedDesign  #: the sheet that is cut, over its target
-    target: FloatArray | None  #: (L, 2), world
+    target: ShapeRings  #: (L, 2), and its holes, world
     corners: FloatArray  #: (K, 4, 2), mm; whole panels of the flat sheet, row by row, in the frame of the cuts
     #: tuple of (P, 2) float, mm; what there is of them, between the centre lines of the cuts; no points where nothing
     #: is.
@@ -65,7 +65,7 @@ class PrintedSheet:
         return cls(design, job.target, corners, plan.panels)
 
     @classmethod
-    def uncut(cls, design: PosedDesign, target: FloatArray | None, width_mm: float) -> PrintedSheet:
+    def uncut(cls, design: PosedDesign, target: ShapeRings, width_mm: float) -> PrintedSheet:
         """The sheet of a design whose cuts are not planned, its lower left corner at (0, 0)."""
         parts = () if design.trim is None else design.trim.kept
         cells = panels_in_mm(design.deployment, parts, width_mm, np.zeros(2))
@@ -87,7 +87,7 @@ class PrintedSheet:
             points = np.concatenate(self.cells)
         else:
             opened = self.design.parts(self.design.phi_target)
-            points = np.concatenate(opened if self.target is None else [*opened, self.target])
+            points = np.concatenate([*opened, *as_rings(self.target)])
         return np.stack([points.min(axis=0), points.max(axis=0)])
 
 

@@ -59,7 +59,7 @@ from kirigami_studio.fabricate.hold import HoldOptions
 from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Construction, Material
 from kirigami_studio.fabricate.options import BoardCut, CutOrder
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, ShapeRings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
@@ -144,7 +144,7 @@ class AssemblyJob:
     paper: Paper = Paper.NONE
     order: CutOrder = CutOrder.SHORTEST
     margin_mm: float = 0.0
-    target: FloatArray | None = None
+    target: ShapeRings = None
     provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
     record: bytes = b""
     verdict: str = ""

@@ -42,7 +42,7 @@ from kirigami_studio.export.pdf_pages import (
 )
 from kirigami_studio.export.picture import Colour
 from kirigami_studio.fabricate.hold import HeldState, HoldKind
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.words import mark, tr, tr_n
@@ -106,7 +106,7 @@ class AssemblySheet:
         ``title`` and ``subject`` of the document.
     lines : sequence of str
         The parts list.
-    target : (L, 2) float or None, mm
+    target : (L, 2) float, and its holes, or None, mm
         Target outline behind the opened sheet.
     holds : sequence of HoldPlace
         Places that hold the sheet, shown in their states.
@@ -131,7 +131,7 @@ class AssemblySheet:
     beds: Sequence[CutBed]
     about: Mapping[str, str]
     lines: Sequence[str]
-    target: FloatArray | None = None
+    target: ShapeRings = None
     holds: Sequence[HoldPlace] = ()
     drive: DriveParts | None = None
     steps: Sequence[str] = STEPS
@@ -218,7 +218,7 @@ class _Drawing:
     shapes : tuple of _Shape
         Layer 2 first, for layer 1 lies on it.
     pins : (H, 2) float, mm
-    target : (L, 2) float or None, mm
+    target : (L, 2) float, and its holes, or None, mm
     size : (width, height), mm
     holds : tuple of (number, tuple of (K, 2) float, mm)
         Numbers of places that hold the sheet, and rings round their holes and tabs.
@@ -226,18 +226,16 @@ class _Drawing:
 
     shapes: tuple[_Shape, ...]
     pins: FloatArray
-    target: FloatArray | None
+    target: tuple[FloatArray, ...]
     size: Size
     holds: tuple[tuple[str, tuple[FloatArray, ...]], ...] = ()
 
     @classmethod
-    def of(
-        cls, assembly: Assembly, phi: float, target: FloatArray | None = None, holds: Sequence[HoldPlace] = ()
-    ) -> _Drawing:
+    def of(cls, assembly: Assembly, phi: float, target: ShapeRings = None, holds: Sequence[HoldPlace] = ()) -> _Drawing:
         """The sheet at an angle."""
         pieces = sorted(assembly.pieces, key=lambda piece: -piece.layer)
         placed = {piece.id: assembly.placed(piece, piece.outline, phi) for piece in pieces}
-        everything = np.concatenate([*placed.values(), *([] if target is None else [target])])
+        everything = np.concatenate([*placed.values(), *as_rings(target)])
         low, high = everything.min(axis=0), everything.max(axis=0)
         shapes = [
             _Shape(
@@ -265,7 +263,7 @@ class _Drawing:
                 points = assembly.placed(assembly.by_id[name], at, phi) - low
                 rings += [point + 0.5 * place.hole_mm * CIRCLE for point in points] if place.hole_mm else [points]
             signs.append((f"{place.number}", tuple(rings)))
-        return cls(tuple(shapes), pins, None if target is None else target - low, (width, height), tuple(signs))
+        return cls(tuple(shapes), pins, tuple(ring - low for ring in as_rings(target)), (width, height), tuple(signs))
 
     @classmethod
     def of_bed(cls, bed: CutBed, under: FloatArray | None = None) -> _Drawing:
@@ -303,8 +301,9 @@ def _pin_place(assembly: Assembly, hinge: Hinge, phi: float) -> FloatArray:
 def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> None:
     """Draw a picture at a scale with its lower left corner (2,), mm, on the page."""
     canvas.setLineWidth(0.35 * LINE_MM * mm if scale < 1.0 else LINE_MM * mm)
-    if drawing.target is not None:
-        _fill(canvas, [corner + scale * drawing.target], picture.TARGET_FILL)
+    for ring in drawing.target:
+        fill = picture.TARGET_FILL if ring is drawing.target[0] else picture.PAPER
+        _fill(canvas, [corner + scale * ring], fill)
     for shape in drawing.shapes:
         rings = [corner + _coarse(scale * ring) for ring in shape.rings]
         _fill(canvas, rings[:1], FILLS[shape.layer])
@@ -313,9 +312,9 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         stroke_colour(canvas, EDGES[shape.layer])
         for ring in rings:
             draw_line(canvas, ring, closed=True)
-    if drawing.target is not None:
+    for ring in drawing.target:
         stroke_colour(canvas, picture.TARGET_EDGE)
-        draw_line(canvas, corner + scale * drawing.target, closed=True)
+        draw_line(canvas, corner + scale * ring, closed=True)
     stroke_colour(canvas, PIN)
     for pin in drawing.pins:
         draw_line(canvas, corner + scale * pin + max(0.5, 1.2 * scale) * CIRCLE, closed=True)

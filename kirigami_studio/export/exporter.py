@@ -16,7 +16,7 @@ from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DEFAULT_PROFILE, DxfVersion
 from kirigami_studio.fabricate.cut_plan import CutPlan
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import ShapeRings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.lattice.deployment import Deployment, deploy
@@ -29,7 +29,7 @@ class ExportJob:
     deployment: Deployment
     phi: float = 0.0  #: radians; target angle
     plan: CutPlan | None = None  #: Needed by cut files (DXF, SVG, PDF)
-    target: FloatArray | None = None  #: (L, 2); target outline, drawn behind pictures
+    target: ShapeRings = None  #: (L, 2), and its holes; target outline, drawn behind pictures
     transform: Similarity = field(default_factory=Similarity)  #: Takes the layout's frame at ``phi`` to the target's
     dxf_version: DxfVersion = DxfVersion.R2010
     profile: str = DEFAULT_PROFILE  #: Key of the machine profile
@@ -49,10 +49,11 @@ class ExportJob:
     verdict: str = ""  #: Level of the verdict on the sheet, which every file repeats; "" where nobody has judged it
     #: How files of solids are made: the planned sheet, as thick as its material, unless given
     printing: Printing = field(default_factory=Printing)
+    thickness_mm: float = 1.0  #: Of the material, for models of rigid parts
     pieces: PosedPieces | None = None  #: Shown in pictures of a design that is made of pieces, not its panels
 
     @classmethod
-    def of(cls, candidate: Candidate, target: FloatArray | None, plan: CutPlan | None = None) -> ExportJob:
+    def of(cls, candidate: Candidate, target: ShapeRings, plan: CutPlan | None = None) -> ExportJob:
         """The job of a candidate with its final sheet, pose and angle, trimmed if it is."""
         motion = deploy(candidate.final_sheet)
         return cls(motion, candidate.final_phi, plan, target, candidate.final_pose, trim=candidate.trim)

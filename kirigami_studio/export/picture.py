@@ -22,7 +22,7 @@ from kirigami_studio.assembly.posed_pieces import GLINT, HEAD_RIM, PosedPieces, 
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.provenance import origin_facts
 from kirigami_studio.fabricate.cut_plan import Layer
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
@@ -37,7 +37,7 @@ INK: Colour = (40, 40, 40)
 LAYER_COLOUR: Mapping[Layer, Colour] = MappingProxyType(
     {
         Layer.RELIEF: (220, 120, 0),
-        Layer.HOLES: (255, 0, 0),
+        Layer.HOLES: (0, 160, 190),
         Layer.SLITS: (255, 0, 0),
         Layer.EDGE_SLITS: (0, 160, 0),
         Layer.OUTLINE: (0, 0, 255),
@@ -150,8 +150,8 @@ def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
         frame = PictureFrame.around(shown_points(job.pieces, (job.shown_phi,), job.target), longest)
         return draw_pieces(job.pieces, job.shown_phi, frame, job.target)
     panels, edges = drawn_panels(job, job.shown_phi)
-    clouds = panels if job.target is None else [*panels, job.target]
-    return draw_polygons(panels, PictureFrame.around(clouds, longest), job.target, edges)
+    frame = PictureFrame.around([*panels, *as_rings(job.target)], longest)
+    return draw_polygons(panels, frame, job.target, edges)
 
 
 def drawn_panels(job: ExportJob, phi: float) -> tuple[list[FloatArray], list[FloatArray] | None]:
@@ -165,10 +165,10 @@ def drawn_panels(job: ExportJob, phi: float) -> tuple[list[FloatArray], list[Flo
 def draw_polygons(
     polygons: Sequence[FloatArray],
     frame: PictureFrame,
-    target: FloatArray | None = None,
+    target: ShapeRings = None,
     edges: Sequence[FloatArray] | None = None,
 ) -> Image.Image:
-    """Draw panels, each (P, 2), over a target outline (L, 2); the target's outline is repeated on top.
+    """Draw panels, each (P, 2), over a target outline (L, 2) with its holes; its lines are repeated on top.
 
     ``edges`` are lines (L, 2) that are drawn over the panels instead of their outlines.
     """
@@ -176,8 +176,9 @@ def draw_polygons(
     size = (frame.pixels[0] * factor, frame.pixels[1] * factor)
     image = Image.new("RGB", size, PAPER)
     draw = ImageDraw.Draw(image)
-    if target is not None:
-        draw.polygon(frame.pixel(target, factor), fill=TARGET_FILL)
+    loops = [frame.pixel(ring, factor) for ring in as_rings(target)]
+    for loop in loops:
+        draw.polygon(loop, fill=TARGET_FILL if loop is loops[0] else PAPER)
     for polygon in polygons:
         corners = frame.pixel(polygon, factor)
         draw.polygon(corners, fill=PANEL)
@@ -185,28 +186,27 @@ def draw_polygons(
             draw.line([*corners, corners[0]], fill=PANEL_EDGE, width=factor, joint="curve")
     for edge in () if edges is None else edges:
         draw.line(frame.pixel(edge, factor), fill=PANEL_EDGE, width=factor, joint="curve")
-    if target is not None:
-        loop = frame.pixel(target, factor)
+    for loop in loops:
         draw.line([*loop, loop[0]], fill=TARGET_EDGE, width=2 * factor, joint="curve")
     return image.resize(frame.pixels, Image.Resampling.BOX)
 
 
-def shown_points(pieces: PosedPieces, angles: Iterable[float], target: FloatArray | None) -> list[FloatArray]:
+def shown_points(pieces: PosedPieces, angles: Iterable[float], target: ShapeRings) -> list[FloatArray]:
     """Points of pieces at some angles (radians), and of their target."""
-    clouds = [pieces.points(phi) for phi in angles]
-    return clouds if target is None else [*clouds, target]
+    return [*(pieces.points(phi) for phi in angles), *as_rings(target)]
 
 
-def draw_pieces(pieces: PosedPieces, phi: float, frame: PictureFrame, target: FloatArray | None = None) -> Image.Image:
-    """Draw pieces layer by layer, with shadows and heads, over a target outline (L, 2).
+def draw_pieces(pieces: PosedPieces, phi: float, frame: PictureFrame, target: ShapeRings = None) -> Image.Image:
+    """Draw pieces layer by layer, with shadows and heads, over a target outline (L, 2) with its holes.
 
-    The target's outline is repeated on top.
+    The target's lines are repeated on top.
     """
     factor, look = SUPERSAMPLING, pieces.look
     size = (frame.pixels[0] * factor, frame.pixels[1] * factor)
     image = Image.new("RGB", size, PAPER)
-    if target is not None:
-        ImageDraw.Draw(image).polygon(frame.pixel(target, factor), fill=TARGET_FILL)
+    loops = [frame.pixel(ring, factor) for ring in as_rings(target)]
+    for loop in loops:
+        ImageDraw.Draw(image).polygon(loop, fill=TARGET_FILL if loop is loops[0] else PAPER)
     fall = max(pieces.shadow * frame.scale, 1.0) * factor
     shown = [[frame.pixel(ring, factor) for ring in rings] for rings in pieces.rings(phi)]
     for place, layer in enumerate(pieces.layers):
@@ -228,8 +228,7 @@ def draw_pieces(pieces: PosedPieces, phi: float, frame: PictureFrame, target: Fl
         _dots(image, heads, 0.8 * radius, look.head)
         spots = [(x - SPOT_AT * radius, y - SPOT_AT * radius) for x, y in heads]
         _dots(image, spots, 0.5 * SPOT * radius, shaded(look.head, GLINT))
-    if target is not None:
-        loop = frame.pixel(target, factor)
+    for loop in loops:
         ImageDraw.Draw(image).line([*loop, loop[0]], fill=TARGET_EDGE, width=2 * factor, joint="curve")
     return image.resize(frame.pixels, Image.Resampling.BOX)
 

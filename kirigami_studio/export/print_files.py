@@ -33,7 +33,7 @@ from kirigami_studio.fabricate.fastener import PrintedPins
 from kirigami_studio.fabricate.hold import HoldOptions
 from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Construction, Material
-from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.arrays import IntArray, ShapeRings
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.foundation.words import mark, tr, tr_n
@@ -127,7 +127,7 @@ class PrintJob:
     pins: PrintedPins
     name: str = ""
     paper: Paper = Paper.NONE
-    target: FloatArray | None = None
+    target: ShapeRings = None
     provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
     verdict: str = ""
     hold: HoldOptions = field(default_factory=HoldOptions)

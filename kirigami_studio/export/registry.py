@@ -9,13 +9,16 @@ from types import MappingProxyType
 from kirigami_studio.export.animation import write_animation
 from kirigami_studio.export.dxf import write_dxf
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.fold import write_fold
 from kirigami_studio.export.layer_files import layer_folder, write_layer_files
 from kirigami_studio.export.lightburn import write_lightburn
+from kirigami_studio.export.mjcf import write_mjcf
 from kirigami_studio.export.pdf import write_pdf
 from kirigami_studio.export.picture import write_png
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.share_page import write_page
 from kirigami_studio.export.svg import write_cut_svg
+from kirigami_studio.export.tables import write_tables
 from kirigami_studio.foundation.errors import ExportError
 
 #: Writes a job's file and reads it back; raises ExportError and leaves an older file alone when that fails.
@@ -58,6 +61,9 @@ WRITERS: Mapping[str, Writer] = MappingProxyType(
         ".stl": _meshes,
         ".3mf": _meshes,
         ".obj": _meshes,
+        ".fold": write_fold,
+        ".xml": write_mjcf,
+        ".csv": write_tables,
     }
 )
 

@@ -28,7 +28,7 @@ from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.export.artwork_patches import PrintedSheet, printed_patches
 from kirigami_studio.export.artwork_raster import BitmapFrame, paint
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, as_rings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.resources import resource
@@ -103,7 +103,7 @@ def page_of(job: ExportJob, stem: str) -> tuple[str, dict[str, Any]]:
     picture = ""
     if job.artwork is not None and pieces is None:
         picture, data["print"] = _print_of(job.artwork, posed, job, scale)
-    target = None if job.target is None else (as_plane(job.target) - _middle(posed)) * scale
+    target = [(as_plane(ring) - _middle(posed)) * scale for ring in as_rings(job.target)]
     (left, bottom), (right, top) = box.tolist()
     style, script = (resource("share", f"page.{kind}").read_text(encoding="utf-8") for kind in ("css", "js"))
     template = string.Template(resource("share", "page.html").read_text(encoding="utf-8"))
@@ -130,8 +130,8 @@ def page_of(job: ExportJob, stem: str) -> tuple[str, dict[str, Any]]:
         "policy": "default-src 'none'; img-src data:; base-uri 'none'; form-action 'none'; "
         f"style-src '{_digest(style)}'; script-src '{_digest(script)}'",
         "box": f"{left:.3f} {-top:.3f} {right - left:.3f} {top - bottom:.3f}",
-        "target": "" if target is None else _path(target),
-        "outlined": " hidden" if target is None else "",
+        "target": " ".join(map(_path, target)),
+        "outlined": "" if target else " hidden",
         "unsaved": "" if job.record else " hidden",
         "facts": "".join(
             f"<tr><td>{html.escape(key.replace('_', ' '))}</td><td>{html.escape(text)}</td></tr>"
@@ -162,7 +162,8 @@ def _subtitle(job: ExportJob, posed: PosedDesign, outlines: Outlines) -> str:
         else:  # the silhouette of both layers
             whole = shapely.union_all(shapely.make_valid(list(map(shapely.Polygon, outlines(posed.phi_target)))))
             shape = shapely.union_all(shapely.polygons([part.exterior for part in shapely.get_parts(whole)]))
-        target = shapely.Polygon(job.target)
+        outer, *holes = as_rings(job.target)
+        target = shapely.Polygon(outer, holes)
         match = shape.intersection(target).area / shape.union(target).area
     shown = [] if match is None else [tr("Match {percent:.1f} %", percent=100.0 * match)]
     return " \N{MIDDLE DOT} ".join([*shown, grid, size])

@@ -16,11 +16,11 @@ from kirigami_studio.export import picture
 from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import drawn_panels, hexadecimal
-from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
+from kirigami_studio.export.profile import BLUE, CYAN, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
 from kirigami_studio.export.provenance import PROGRAM, facts_of, origin_facts
 from kirigami_studio.export.strokes import Stroke, extent, file_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, as_rings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
@@ -37,7 +37,14 @@ NOTE_LETTERS = 30.0
 #: What a picture says of itself, so that nobody cuts it.
 NO_CUT_FILE = "not a cut file"
 #: What the AutoCAD colours of the profiles look like on white.
-ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255), MAGENTA: (255, 0, 255), WHITE: (0, 0, 0)}
+ACI_COLOUR = {
+    RED: (255, 0, 0),
+    GREEN: (0, 255, 0),
+    CYAN: (0, 255, 255),
+    BLUE: (0, 0, 255),
+    MAGENTA: (255, 0, 255),
+    WHITE: (0, 0, 0),
+}
 
 
 def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile, record: bytes = b"") -> None:
@@ -150,14 +157,14 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     lines = [edge * scale for edge in edges] if edges is not None else [np.concatenate([p, p[:1]]) for p in panels]
     # As cut the voids are other ones; the page shows through.
     voids = [] if job.motion is not None else list(design.nodes(phi)[tables.void_nodes].reshape(-1, 4, 2) * scale)
-    target = [] if job.target is None else [np.asarray(job.target, dtype=np.float64) * scale]
+    target = [np.asarray(ring, dtype=np.float64) * scale for ring in as_rings(job.target)]
     everything = np.concatenate([*panels, *voids, *target])
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
     width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
     caption = "" if job.motion is None else job.motion.caption
     rims = [np.concatenate([loop, loop[:1]]) for loop in target]
     groups: list[tuple[str, picture.Colour, list[list[FloatArray]]]] = [
-        ("TARGET_AREA", picture.TARGET_FILL, [[loop] for loop in target]),
+        ("TARGET_AREA", picture.TARGET_FILL, [target] if target else []),
         ("VOIDS", picture.VOID, [[void] for void in voids]),
         ("PANELS", picture.PANEL, [[panel] for panel in panels]),
         ("EDGES", picture.PANEL_EDGE, [_band(line, EDGE_MM) for line in lines]),
@@ -170,12 +177,12 @@ def _write_pieces_svg(job: ExportJob, pieces: PosedPieces, path: Path) -> None:
     """Draw pieces layer by layer over the target, at their own size."""
     phi, scale, look = job.shown_phi, pieces.mm_per_world, pieces.look
     rings = [[ring * scale for ring in shape] for shape in pieces.simplified(FINE).rings(phi)]
-    target = [] if job.target is None else [np.asarray(job.target, dtype=np.float64) * scale]
+    target = [np.asarray(ring, dtype=np.float64) * scale for ring in as_rings(job.target)]
     everything = np.concatenate([*(shape[0] for shape in rings), *target])
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
     width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
     groups: list[tuple[str, picture.Colour, list[list[FloatArray]]]] = [
-        ("TARGET_AREA", picture.TARGET_FILL, [[loop] for loop in target])
+        ("TARGET_AREA", picture.TARGET_FILL, [target] if target else [])
     ]
     for place, layer in enumerate(pieces.layers, start=1):
         shapes = [rings[number] for number in layer]

@@ -14,12 +14,12 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 import shapely
-from shapely.geometry import Point, Polygon
+from shapely.geometry import LineString, Point, Polygon
 
 from kirigami_studio.fabricate.centres import Centres, bending_lengths, settled_centres
 from kirigami_studio.fabricate.connectors import SHORTEST_CUT_MM
@@ -52,12 +52,24 @@ SLIGHTLY_NARROWER, SLIGHT_DOWN_TO, NARROWER = 0.95, 0.75, 0.8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class RimCut:
+    """Centre line of a cut along the edge of the material, which is on its left."""
+
+    points: FloatArray  #: (P, 2), mm; the first one not repeated
+    bulges: FloatArray | None = None  #: (P,); arcs around the connectors on it
+
+    @property
+    def line(self) -> LineString:
+        """It as one closed line."""
+        return measured_line(self.points, self.bulges, True)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Arranged:
     """Cuts with centred connectors."""
 
     cuts: HingedCuts
-    ring: FloatArray  #: (P, 2), mm; centre line of the outline, counter-clockwise
-    ring_bulges: FloatArray | None  #: (P,); arcs around the connectors on it
+    rims: tuple[RimCut, ...]  #: the outline, counter-clockwise, then the holes, clockwise
     centres: FloatArray | None  #: (H, 2), mm; where the connectors turn; None for styles that do not place them.
     #: How many connectors had no room to be centred, so that the voids beside them are no parallelograms.
     off_centre: int = 0
@@ -67,25 +79,25 @@ class Arranged:
     @classmethod
     def without_centres(cls, cuts: HingedCuts, outline: Polygon) -> Arranged:
         """Cuts of another style."""
-        return cls(cuts, counter_clockwise(outline), None, None)
+        return cls(cuts, rims_of(outline), None)
 
     @property
     def lowest(self) -> FloatArray:
         """Smallest coordinates (2,) that the head reaches."""
-        ring = shapely.get_coordinates(measured_line(self.ring, self.ring_bulges, True))
+        ring = shapely.get_coordinates(self.rims[0].line)
         lowest: FloatArray = np.concatenate([ring, *(piece.points for piece in self.cuts.pieces)]).min(axis=0)
         return lowest
 
     def pieces(self, kerf_mm: float) -> int:
         """How many pieces the sheet falls into: what a trimmed outline leaves beside a moved cut may come off."""
-        outline = Polygon(measured_line(self.ring, self.ring_bulges, True))
-        return len(remaining_pieces(outline, [piece.line for piece in self.cuts.pieces], kerf_mm))
+        outline, *holes = (rim.line for rim in self.rims)
+        return len(remaining_pieces(Polygon(outline, holes), [piece.line for piece in self.cuts.pieces], kerf_mm))
 
 
-def counter_clockwise(outline: Polygon) -> FloatArray:
-    """The ring of an outline (P, 2), its first point not repeated."""
-    ring: FloatArray = shapely.get_coordinates(shapely.orient_polygons(outline).exterior)[:-1]
-    return ring
+def rims_of(outline: Polygon) -> tuple[RimCut, ...]:
+    """The ring of an outline and those of its holes."""
+    oriented = shapely.orient_polygons(outline)
+    return tuple(RimCut(shapely.get_coordinates(ring)[:-1]) for ring in (oriented.exterior, *oriented.interiors))
 
 
 #: Makes outline and remaining straight cuts from cuts (C, 2, 2) that end at their tips.
@@ -122,6 +134,8 @@ class StraightSheet:
     kerf_mm: float
     overcut_mm: float
     removed: tuple[int, ...]
+    #: Those of them that the user removed: what they faced stays beside its cut.
+    cut_open: tuple[int, ...]
     trimmed: Trimming  #: makes outline and cuts of the straight cuts
 
 
@@ -144,7 +158,7 @@ class _Room:
         self._least, self._widths = np.minimum(sheet.least, sheet.widths), sheet.widths.copy()
         self._attempt = np.zeros(sheet.table.hinge_count, dtype=np.intp)
         self._flat = np.zeros(sheet.table.hinge_count, dtype=np.bool_)
-        self._flat[_facing(sheet.table, sheet.removed)] = True
+        self._flat[_facing(sheet.table, sheet.cut_open)] = True
 
     @property
     def _spans(self) -> FloatArray:
@@ -255,7 +269,8 @@ class _Draft:
         self._bowed: set[int] = set()
         self._features: list[list[_Feature]] = []
         self._made = [self._shaped(number, piece) for number, piece in enumerate(self._pieces)]
-        self._ring, self._ring_bulges = self._bowed_outline()
+        self._outline_features: list[_Feature] = []
+        self._rims = self._bowed_rims()
 
     def _tips(self) -> FloatArray:
         """Where the slits end on their own lines: a span from what they rest on, or square before their tips."""
@@ -356,42 +371,48 @@ class _Draft:
             found.append((place, hinge, bow))
         return [(hinge, bow) for _, hinge, bow in sorted(found, key=lambda entry: entry[0])]
 
-    def _bowed_outline(self) -> tuple[FloatArray, FloatArray]:
-        """The outline with bows around the connectors on it."""
-        ring = counter_clockwise(self._outline)
-        bulges = np.zeros(len(ring))
+    def _bowed_rims(self) -> list[RimCut]:
+        """The outline and the holes with bows around the connectors on them."""
+        rims = [replace(rim, bulges=np.zeros(len(rim.points))) for rim in rims_of(self._outline)]
         middles, radii = self._centres.circle
-        self._outline_features = []
         waiting = [hinge for hinge in range(self._table.hinge_count)
                    if not self._flat[hinge] and hinge not in self._bowed and hinge not in self._crowded
                    and hinge not in self._removed
                    and self._centres.height_mm[hinge] < 0.5 * self._centres.span_mm[hinge] - NEGLIGIBLE_MM]  # fmt: skip
         for hinge in waiting:
-            crossing = crossings(ring, bulges, middles[hinge], float(radii[hinge]))
-            if crossing is None:
+            for number, rim in enumerate(rims):
+                bowed = self._bowed_rim(rim, hinge, middles[hinge], float(radii[hinge]))
+                if bowed is not None:
+                    rims[number] = bowed
+                    break
+            else:
                 self._crowded.add(hinge)
-                continue
-            entry, exit_, (before, after) = crossing
-            bow = Bow(middles[hinge], float(radii[hinge]), True, entry, exit_)
-            bulge = bow.bulge(entry, exit_)
-            # From the vertex after the way out round to the vertex before the way in.
-            kept = np.arange(after + 1, before + 1 + (len(ring) if before < after + 1 else 0)) % len(ring)
-            if len(kept) < 2:
-                self._crowded.add(hinge)
-                continue
-            ring = np.concatenate([ring[kept], [entry, exit_]])
-            bulges = np.concatenate([bulges[kept], [bulge, 0.0]])
-            self._outline_features.append(_Feature(np.stack([entry, exit_]), np.array([bulge]), hinge, False))
-        return ring, bulges
+        return rims
+
+    def _bowed_rim(self, rim: RimCut, hinge: int, middle: FloatArray, radius: float) -> RimCut | None:
+        """A rim with a bow around one connector; None for one off the rim, or without room."""
+        ring, bulges = rim.points, rim.bulges
+        crossing = None if bulges is None else crossings(ring, bulges, middle, radius)
+        if crossing is None or bulges is None:
+            return None
+        entry, exit_, (before, after) = crossing
+        bow = Bow(middle, radius, True, entry, exit_)
+        bulge = bow.bulge(entry, exit_)
+        # From the vertex after the way out round to the vertex before the way in.
+        kept = np.arange(after + 1, before + 1 + (len(ring) if before < after + 1 else 0)) % len(ring)
+        if len(kept) < 2:
+            return None
+        self._outline_features.append(_Feature(np.stack([entry, exit_]), np.array([bulge]), hinge, False))
+        return RimCut(np.concatenate([ring[kept], [entry, exit_]]), np.concatenate([bulges[kept], [bulge, 0.0]]))
 
     def in_the_way(self) -> tuple[set[int], set[int]]:
         """Hinges whose slits must turn within less room, and hinges that nothing can bow around."""
         tight = {hinge for hinge in self._tight if self._turns[hinge] is not None}
         flatter = set(self._crowded)
         lines = self._lines()
-        features = [*self._features, self._outline_features]
-        cut = np.array([*(piece.cut for piece in self._made), -1])
-        opens = np.array([*(piece.opens for piece in self._made), True])
+        features = [*self._features, *[self._outline_features] * len(self._rims)]
+        cut = np.array([*(piece.cut for piece in self._made), *[SHEET_EDGE] * len(self._rims)])
+        opens = np.array([*(piece.opens for piece in self._made), *[True] * len(self._rims)])
         one, other = shapely.STRtree(lines).query(lines, "dwithin", float(self._centres.span_mm.max()) - CLEAR_MM)
         apart = (one < other) & (cut[one] != cut[other]) & ~(opens[one] & opens[other])
         one, other = one[apart], other[apart]
@@ -409,7 +430,7 @@ class _Draft:
             able = {hinge for hinge in turning if self._can_tighten(hinge)}
             tight |= able or (set() if bows else turning)
             flatter |= set() if able else bows
-        return tight | self._curling_back(lines[-1]), flatter
+        return tight | self._curling_back(shapely.multilinestrings(lines[-len(self._rims) :])), flatter
 
     def _curling_back(self, outline: shapely.Geometry) -> set[int]:
         """Hinges whose edge cuts, after they came from the outline, turn back to it by less than a span."""
@@ -430,12 +451,13 @@ class _Draft:
         return len(TURNS) if turn is None or len(turn.points) == 1 else turn.attempt + 1
 
     def _lines(self) -> npt.NDArray[np.object_]:
-        """Centre lines of all pieces and of the outline, with ``CHORDS`` chords for each arc."""
-        points = [*(piece.points for piece in self._made), np.concatenate([self._ring, self._ring[:1]])]
-        bulges = [
-            *(np.zeros(len(piece.points)) if piece.bulges is None else piece.bulges for piece in self._made),
-            np.concatenate([self._ring_bulges, [0.0]]),
+        """Centre lines of all pieces, then of the rims, with ``CHORDS`` chords for each arc."""
+        closed = [
+            RimCut(np.concatenate([rim.points, rim.points[:1]]), np.append(rim.bulges, 0.0)) for rim in self._rims
         ]
+        drawn = [*self._made, *closed]
+        points = [one.points for one in drawn]
+        bulges = [np.zeros(len(one.points)) if one.bulges is None else one.bulges for one in drawn]
         place, bulge = np.concatenate(points), np.concatenate(bulges)
         owner = np.repeat(np.arange(len(points)), [len(part) for part in points])
         arcs = np.flatnonzero(bulge != 0.0)
@@ -483,7 +505,7 @@ class _Draft:
         straight = tips - 0.5 * centres.span_mm[:, None] * centres.normal
         asides = straight_asides(self._seats)
         cuts = HingedCuts(tuple(self._made), tuple(self._seats), tuple(self._places), {}, flexure, asides, Counter())
-        bulges = self._ring_bulges if self._ring_bulges.any() else None
+        rims = tuple(rim if np.any(rim.bulges) else RimCut(rim.points) for rim in self._rims)
         there = ~np.isin(np.arange(len(self._straight)), self._removed)
         where = np.where(self._straight[:, None], straight, turned)
-        return Arranged(cuts, self._ring, bulges, where, int(np.sum(self._straight & there)), widths)
+        return Arranged(cuts, rims, where, int(np.sum(self._straight & there)), widths)

@@ -73,11 +73,11 @@ def check_plan(
     kerf = plan.kerf_mm if kerf_mm is None else kerf_mm
     if rigid is None and phi is not None and plan.tiles is not None:
         rigid = plan.tiles.rigid_panels(plan.hinges, kerf, phi)
-    inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
+    inner = plan.inner
     lines = [measured_line(path.points, path.bulges, path.closed) for path in inner]
-    boundary = Polygon(plan.outline)
+    boundary = plan.boundary
     pieces = finished_pieces(plan, kerf)
-    ligament = smallest_ligament(lines, boundary.exterior, kerf, joined_pairs(plan, inner, lines))
+    ligament = smallest_ligament(lines, boundary.boundary, kerf, joined_pairs(plan, inner, lines))
     twice = overlap([LineString(path.travelled) for path in plan.paths])
     edge, neck = smallest_edge(plan.panels, kerf), smallest_neck(plan.panels, kerf)
     bent = None if phi is None else flexing(plan, phi, rigid)
@@ -114,9 +114,8 @@ def finished_pieces(plan: CutPlan, kerf_mm: float | None = None) -> list[Polygon
     kerf_mm : float, optional
         The plan's own unless given.
     """
-    inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
-    cuts = [Polygon(path.flattened) if path.closed else LineString(path.flattened) for path in inner]
-    return remaining_pieces(Polygon(plan.outline), cuts, plan.kerf_mm if kerf_mm is None else kerf_mm)
+    cuts = [Polygon(path.flattened) if path.closed else LineString(path.flattened) for path in plan.inner]
+    return remaining_pieces(plan.boundary, cuts, plan.kerf_mm if kerf_mm is None else kerf_mm)
 
 
 def piece_problems(pieces: Sequence[Polygon], boundary: Polygon, kerf_mm: float, removed: int) -> list[Problem]:

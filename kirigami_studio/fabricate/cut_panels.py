@@ -95,8 +95,9 @@ def cut_panels(plan: CutPlan) -> CutPanels:
 
 
 def _lines(plan: CutPlan) -> tuple[npt.NDArray[np.object_], IntArray]:
-    """Centre lines of all cuts, tabs of the outline closed, and the number of the cut of each; -1 for the outline."""
-    paths = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
+    """Centre lines of all cuts, tabs closed, and the number of the cut of each; -1 for rims."""
+    # Holes are of no cut, as the outline is.
+    paths = [*plan.inner, *plan.on_layer(Layer.HOLES)]
     closed = [path for path in plan.on_layer(Layer.OUTLINE) if path.closed]
     ring = closed[0].travelled if len(closed) == 1 else np.concatenate([plan.outline, plan.outline[:1]])
     lines = [*(shapely.LineString(path.travelled) for path in paths), shapely.LineString(ring)]
@@ -133,7 +134,8 @@ def _panels_of(parts: npt.NDArray[np.object_], plan: CutPlan) -> IntArray:
     for number, panel, area in zip(part.tolist(), near.tolist(), shared.tolist(), strict=True):
         if area > most[number]:
             found[number], most[number] = there[panel], area
-    holes = [shapely.Polygon(path.flattened) for path in plan.on_layer(Layer.RELIEF) if path.closed]
+    closed = [*plan.on_layer(Layer.RELIEF), *plan.on_layer(Layer.HOLES)]
+    holes = [shapely.Polygon(path.flattened) for path in closed if path.closed]
     if holes:
         found[np.unique(shapely.STRtree(holes).query(shapely.point_on_surface(parts), "within")[0])] = -1
     return found

@@ -17,7 +17,7 @@ from kirigami_studio.fabricate.centred import Arranged, StraightSheet, Trimming,
 from kirigami_studio.fabricate.centres import void_misses
 from kirigami_studio.fabricate.connectors import OVERCUT_MM, Hinges, edge_cut_paths, hinge_widths, outline_path, shorten
 from kirigami_studio.fabricate.copies import Copies, lay_out
-from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened, measured_line
+from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM, check_length, flattened
 from kirigami_studio.fabricate.cut_path import CutPath as CutPath
 from kirigami_studio.fabricate.cut_path import Layer as Layer
 from kirigami_studio.fabricate.endings import seats
@@ -54,6 +54,8 @@ LARGEST_SHEET_MM = 3000.0
 DECIMALS = 4
 #: A connector counts as wider than asked above this difference (mm).
 WIDER_MM = 1e-3
+#: Cuts along the edge of the material; all others are within it.
+RIMS = (Layer.HOLES, Layer.OUTLINE)
 #: The note about slit ends that an obstacle kept straight.
 WHY_STRAIGHT = {
     Obstacle.SLANT: "plan.straight_because_slanted",
@@ -66,8 +68,8 @@ WHY_STRAIGHT = {
 class CutPlan:
     """A job for the cutter."""
 
-    #: In the order of cutting: relief holes, slits, edge cuts, outline (one closed path, or as many open ones as there
-    #: are tabs).  Smallest coordinates are 0, y up.
+    #: In the order of cutting: relief holes, slits, edge cuts, holes of the silhouette, outline (one closed path, or as
+    #: many open ones as there are tabs).  Smallest coordinates are 0, y up.
     paths: tuple[CutPath, ...]
     size_mm: tuple[float, float]  #: (width, height); the finished sheet; of a trimmed one, what it was before
     #: connector_mm, kerf_mm, overcut_mm: finished connector width asked for, full cut width, reach of edge cuts beyond
@@ -133,6 +135,16 @@ class CutPlan:
     def outline(self) -> FloatArray:
         """Centre line of the outline as one ring (P, 2), mm, tabs closed; the first point is not repeated."""
         return joined_ring([_finely(path) for path in self.on_layer(Layer.OUTLINE)])
+
+    @property
+    def boundary(self) -> Polygon:
+        """Area within the centre line of the outline, tabs closed, less the holes, mm."""
+        return Polygon(self.outline, [_finely(path) for path in self.on_layer(Layer.HOLES)])
+
+    @property
+    def inner(self) -> list[CutPath]:
+        """The cuts within the sheet: all but the outline and the holes."""
+        return [path for path in self.paths if path.layer not in RIMS]
 
     @property
     def bounds_mm(self) -> tuple[float, float]:
@@ -237,7 +249,7 @@ def plan_cuts(
     if options.style is ConnectorStyle.CENTRED:
         least = least_widths(widths, material.min_ligament_mm, dict(left.hinge_mm))
         arranged = centred_cuts(
-            StraightSheet(lines, table, sides, widths, least, kerf, overcut, left.removed, trimming)
+            StraightSheet(lines, table, sides, widths, least, kerf, overcut, left.removed, options.removed, trimming)
         )
         if arranged is not None and parts and arranged.pieces(kerf) > 1 + len(options.removed):
             arranged = None
@@ -257,8 +269,11 @@ def plan_cuts(
         arranged = Arranged.without_centres(cuts, outline)
     origin = arranged.lowest
     cuts = arranged.cuts.moved(lambda points: _on_grid(points - origin))
-    ring = CutPath(_on_grid(arranged.ring - origin), Layer.OUTLINE, True, bulges=arranged.ring_bulges)
-    boundary = Polygon(measured_line(ring.points, ring.bulges, True))
+    ring, *holes = (
+        CutPath(_on_grid(rim.points - origin), Layer.HOLES if number else Layer.OUTLINE, True, bulges=rim.bulges)
+        for number, rim in enumerate(arranged.rims)
+    )
+    boundary = Polygon(_finely(ring), [_finely(hole) for hole in holes])
     planned = widths if arranged.widths is None else arranged.widths
     go_on()
     finished = cuts.widths(table, left.removed, boundary, kerf)
@@ -267,7 +282,7 @@ def plan_cuts(
     hinges = _hinges(cuts, table, widths, planned, finished, lost)
     plan = CutPlan(
         paths=in_cutting_order(
-            _paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf),
+            [*holes, *_paths(cuts.pieces, ring, hinges.position[hinges.through == SHEET_EDGE], options, kerf)],
             options.order,
             table,
         ),
@@ -327,7 +342,8 @@ def _trimming(
         return lambda pulled: _plain_cuts(pulled, table, size, kerf, overcut)
     area = kept_area(deployment, parts or (None,) * len(deployment.topology.panel_nodes.reshape(-1, 4)), width)
     straight = STRAIGHT_MM if parts else UNTRIMMED_STRAIGHT_MM
-    return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight, lost)
+    sides = sheet_lines(deployment, width)[0]
+    return lambda pulled: trimmed_cuts(area, pulled, table, kerf, overcut, straight, lost, sides)
 
 
 def _plain_cuts(

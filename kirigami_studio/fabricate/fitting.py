@@ -77,7 +77,7 @@ class Fitting:
         self._style, self._seats, self._radius, self._table = style, hinge_seats, radius_mm, table
         self._pieces, self._places = pieces, places
         self._shortest = max(SHORTEST_CUT_MM, 2.0 * kerf_mm)
-        self._obstacles = np.array([*(piece.line for piece in pieces), outline.exterior], dtype=object)
+        self._obstacles = np.array([*(piece.line for piece in pieces), outline.boundary], dtype=object)
         self._obstacle_cut = np.array([*(piece.cut for piece in pieces), -1])
         self._obstacle_tree = shapely.STRtree(self._obstacles)
         self._span = np.array([seat.span_mm for seat in hinge_seats])

@@ -232,7 +232,7 @@ def cut_through(
 
 def _over_edge(tip: FloatArray, heading: FloatArray, outline: Polygon, overcut_mm: float) -> list[FloatArray]:
     """From a tip over the outline by the overcut: straight on, or square to the edge where the slit is flat to it."""
-    foot = shapely.get_coordinates(shapely.shortest_line(outline.exterior, Point(tip)))[0]
+    foot = shapely.get_coordinates(shapely.shortest_line(outline.boundary, Point(tip)))[0]
     height = float(np.linalg.norm(foot - tip))
     # Without a kerf the tip may lie on the outline itself.
     outwards = (foot - tip) / height if height > ON_CUT_MM else _outwards(foot, outline)
@@ -241,7 +241,7 @@ def _over_edge(tip: FloatArray, heading: FloatArray, outline: Polygon, overcut_m
         if height <= ON_CUT_MM:
             return [tip + heading * (overcut_mm / sine)]
         ahead = LineString([tip, tip + heading * (2.0 * height / FLATTEST)])
-        met = shapely.intersection(ahead, outline.exterior)
+        met = shapely.intersection(ahead, outline.boundary)
         if not shapely.is_empty(met):
             first = tip + heading * shapely.distance(met, Point(tip))
             return [first + heading * (overcut_mm / sine)]
@@ -250,7 +250,8 @@ def _over_edge(tip: FloatArray, heading: FloatArray, outline: Polygon, overcut_m
 
 def _outwards(foot: FloatArray, outline: Polygon) -> FloatArray:
     """Unit vector (2,) square to an outline, away from its inside, at a place on it."""
-    ring = shapely.get_coordinates(shapely.orient_polygons(outline).exterior)
+    rings = shapely.get_parts(shapely.orient_polygons(outline).boundary)
+    ring = shapely.get_coordinates(rings[int(np.argmin(shapely.distance(rings, Point(foot))))])
     edges = shapely.linestrings(np.stack([ring[:-1], ring[1:]], axis=1))
     nearest = int(np.argmin(shapely.distance(edges, Point(foot))))
     x, y = ring[nearest + 1] - ring[nearest]
@@ -303,10 +304,10 @@ def measured_widths(
     for hinge, through in enumerate(table.hinge_through.tolist()):
         if through != SHEET_EDGE and through in whole:
             continue
-        edge = shapely.intersection(outline.exterior, _beside(ends[hinge], hinge_seats[hinge]))
+        edge = shapely.intersection(outline.boundary, _beside(ends[hinge], hinge_seats[hinge]))
         distance[hinge] = np.nanmin([distance[hinge], shapely.distance(shapes[hinge], edge), np.inf])
         if np.isinf(distance[hinge]):
-            distance[hinge] = shapely.distance(shapes[hinge], outline.exterior)
+            distance[hinge] = shapely.distance(shapes[hinge], outline.boundary)
     finished: FloatArray = distance - kerf_mm
     return finished
 

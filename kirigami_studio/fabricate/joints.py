@@ -9,7 +9,7 @@ import shapely
 from shapely.geometry import LineString
 
 from kirigami_studio.fabricate.cut_path import measured_line
-from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
+from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan
 
 #: Coordinates are rounded to half of this (mm): what is nearer touches.
 TOUCH_MM = 2e-4
@@ -43,7 +43,7 @@ def joined_pairs(plan: CutPlan, paths: Sequence[CutPath], lines: Sequence[LineSt
 
 def joint_count(plan: CutPlan) -> int:
     """Number of ends of a plan's cuts that lie on another cut, the outline left out."""
-    inner = [path for path in plan.paths if path.layer is not Layer.OUTLINE]
+    inner = plan.inner
     return len(ending_on_others([measured_line(path.points, path.bulges, path.closed) for path in inner]))
 
 

@@ -34,6 +34,8 @@ STRAIGHT_MM = 5e-3
 UNTRIMMED_STRAIGHT_MM = 2e-4
 #: Cuts end this far (mm) inside the material where they leave it.
 INSIDE_MM = 8e-3
+#: Nearer than this (mm) the rim of a hole runs on the side of a panel.
+ON_SIDE_MM = 1e-3
 #: Gaps and spikes narrower than twice this (mm) are filled and removed whatever the kerf.
 HAIR_MM = 1e-2
 #: Corners of the material sharper than 2 asin(1 / MITRE) = 23 degrees get a blunt outline around them.
@@ -98,7 +100,7 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
     # Snapping may leave a gap of about one grid step between panels that share a side.
     snapped = shapely.buffer(shapely.union_all(panels, grid_size=GRID_MM), 3.0 * GRID_MM, join_style="mitre")
     united = shapely.get_parts(shapely.buffer(snapped, -3.0 * GRID_MM, join_style="mitre"))
-    areas = [Polygon(part.exterior) for part in united if isinstance(part, Polygon) and part.area > INSIDE_MM**2]
+    areas = [part for part in united if isinstance(part, Polygon) and part.area > INSIDE_MM**2]
     if len(areas) != 1:
         raise FabricationError("trimmed.falls_apart", parts=len(areas))
     return areas[0]
@@ -130,6 +132,7 @@ def trimmed_cuts(
     overcut_mm: float,
     straight_mm: float = STRAIGHT_MM,
     lost: Sequence[int] = (),
+    sides: FloatArray | None = None,
 ) -> tuple[Polygon, list[CutPiece]]:
     """Outline and remaining cuts of a trimmed sheet that fall into no crumbs.
 
@@ -145,12 +148,16 @@ def trimmed_cuts(
         As for :func:`outline_around`.
     lost : sequence of int
         Hinges that were given up, see :func:`lost_hinges`.
+    sides : (C, 2, 2) float, mm, optional
+        Sides of the panels along each cut, where cuts do not run on them.
 
     Raises
     ------
     FabricationError
         A hinge has lost the material that its connector needs.
     """
+    if sides is not None and area.interiors:
+        area = _up_to_cuts(area, sides, lines)
     for _ in range(CRUMB_ROUNDS):
         outline = outline_around(area, kerf_mm, straight_mm)
         pieces = remaining_cuts(lines, table, outline, kerf_mm, overcut_mm, lost)
@@ -162,15 +169,40 @@ def trimmed_cuts(
     return outline, pieces
 
 
-def outline_around(area: Polygon, kerf_mm: float, straight_mm: float = STRAIGHT_MM) -> Polygon:
-    """What the centre line of the outline cut encloses: the material grown by half a kerf, gaps within it closed.
+def _up_to_cuts(area: Polygon, sides: FloatArray, lines: FloatArray) -> Polygon:
+    """The area less the strips between the sides (C, 2, 2) of its holes and the cuts beside."""
+    rims = shapely.multilinestrings(list(area.interiors))
+    near = shapely.buffer(shapely.linestrings(sides), ON_SIDE_MM, cap_style="flat")
+    strips = []
+    for cut in shapely.STRtree(near).query(rims, "intersects").tolist():
+        run = np.diff(sides[cut], axis=0)[0]
+        length = float(np.hypot(*run))
+        for part in shapely.get_parts(shapely.line_merge(shapely.intersection(rims, near[cut]))):
+            share = (shapely.get_coordinates(part) - sides[cut, 0]) @ run / length**2
+            if length * float(np.ptp(share)) > 4.0 * ON_SIDE_MM:
+                ends = np.array([share.min(), share.max()])
+                both = [line[0] + np.outer(ends, line[1] - line[0]) for line in (sides[cut], lines[cut])]
+                strips.append(Polygon([*both[0], *both[1][::-1]]).buffer(ON_SIDE_MM, join_style="mitre"))
+    return _largest(area.difference(shapely.union_all(strips))) if strips else area
 
-    Vertices that are off a straight line by less than ``straight_mm`` are left out.
+
+def outline_around(area: Polygon, kerf_mm: float, straight_mm: float = STRAIGHT_MM) -> Polygon:
+    """The area within the rims' centre lines: material and half a kerf, gaps in it closed.
+
+    Vertices that are off a straight line by less than ``straight_mm`` are left out, and holes that are no wider than a
+    hair.
     """
     closed = _grown(_grown(area, max(0.5 * kerf_mm, HAIR_MM)), -max(0.5 * kerf_mm, HAIR_MM))
-    smooth = _grown(_grown(Polygon(closed.exterior), -HAIR_MM), HAIR_MM + 0.5 * kerf_mm)
-    outline = shapely.simplify(Polygon(smooth.exterior), straight_mm)
-    return Polygon(_largest(shapely.set_precision(outline, GRID_MM)).exterior)
+    smooth = _grown(_grown(_open(closed), -HAIR_MM), HAIR_MM + 0.5 * kerf_mm)
+    outline = shapely.simplify(_open(smooth), straight_mm)
+    return _open(_largest(shapely.set_precision(outline, GRID_MM)))
+
+
+def _open(area: Polygon) -> Polygon:
+    """The area with those of its holes that are wider than a hair."""
+    holes = np.array([Polygon(ring) for ring in area.interiors], dtype=object)
+    wide = ~shapely.is_empty(shapely.buffer(holes, -HAIR_MM))
+    return Polygon(area.exterior, [hole.exterior for hole in holes[wide]])
 
 
 def _grown(area: Polygon, width_mm: float) -> Polygon:
@@ -284,16 +316,17 @@ def _into_notch(mouth: FloatArray, outline: Polygon, overcut_mm: float) -> list[
 
     In the sharpest notches any other way would run along a side; where this one does too, the cut ends at the corner.
     """
-    ring = shapely.get_coordinates(outline.exterior)[:-1]
+    rings = shapely.get_parts(outline.boundary)
+    ring = shapely.get_coordinates(rings[int(np.argmin(shapely.distance(rings, Point(mouth))))])[:-1]
     corner = int(np.argmin(np.linalg.norm(ring - mouth, axis=1)))
     sides = np.stack([ring[corner - 1], ring[(corner + 1) % len(ring)]]) - ring[corner]
     middle = (sides / np.linalg.norm(sides, axis=1)[:, None]).sum(axis=0)
     end = ring[corner] + middle / np.linalg.norm(middle) * overcut_mm
-    crossed = shapely.intersection(LineString([ring[corner] + 0.1 * (end - ring[corner]), end]), outline.exterior)
+    crossed = shapely.intersection(LineString([ring[corner] + 0.1 * (end - ring[corner]), end]), outline.boundary)
     if not shapely.is_empty(crossed):
         end = ring[corner] + 0.5 * (shapely.get_coordinates(crossed)[0] - ring[corner])
     # Rounding may lay what is nearly on the outline upon it.
-    if outline.exterior.distance(Point(end)) < STRAIGHT_MM or _runs_along(
+    if outline.boundary.distance(Point(end)) < STRAIGHT_MM or _runs_along(
         LineString([ring[corner], end]), outline, overcut_mm
     ):
         return [ring[corner]]
@@ -302,7 +335,7 @@ def _into_notch(mouth: FloatArray, outline: Polygon, overcut_mm: float) -> list[
 
 def _runs_along(line: LineString, outline: Polygon, overcut_mm: float) -> bool:
     """Whether a short way out would cut a stretch of the outline a second time."""
-    nearby = shapely.intersection(outline.exterior, line.buffer(overcut_mm))
+    nearby = shapely.intersection(outline.boundary, line.buffer(overcut_mm))
     return overlap_length([nearby, line]) >= GRID_MM
 
 
@@ -310,7 +343,7 @@ def _along_gap(mouth: FloatArray, ways: FloatArray, outline: Polygon, kerf_mm: f
     """Which ways (W, 2) from a mouth to the outline stay as near to it as the mouth is: the others cross material."""
     near = 1.05 * (0.5 * kerf_mm + INSIDE_MM)
     places = mouth + ways[:, None, :] * np.array([0.25, 0.5, 0.75])[:, None]
-    stay: BoolArray = (shapely.distance(shapely.points(places), outline.exterior) <= near).all(axis=1)
+    stay: BoolArray = (shapely.distance(shapely.points(places), outline.boundary) <= near).all(axis=1)
     return stay
 
 
@@ -318,7 +351,7 @@ def _lengths_inside(starts: FloatArray, ways: FloatArray, outline: Polygon) -> F
     """How far rays (W, 2) run in the outline before they first leave it: (W,) float, inf for those that do not."""
     starts = np.broadcast_to(starts, ways.shape)
     rays = shapely.linestrings(np.stack([starts, starts + ways], axis=1))
-    met = shapely.intersection(rays, outline.exterior)
+    met = shapely.intersection(rays, outline.boundary)
     first = shapely.distance(met, shapely.points(starts))
     outside = ~shapely.covers(outline, shapely.points(starts))
     crossed = ~shapely.is_empty(met)

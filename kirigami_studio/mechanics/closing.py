@@ -197,7 +197,13 @@ def carried_on(found: Closing, deployment: Deployment, width_mm: float, phi: flo
 
 
 def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray) -> FloatArray:
-    """Outer boundary (K, 2), mm, of the sheet after a motion (P, 3): of the union of all panels and voids.
+    """Outer boundary (K, 2), mm, of the sheet after a motion (P, 3): of the union of all panels and voids."""
+    area = covered_area(deployment, network, width_mm, motion)
+    return np.asarray(shapely.get_coordinates(area.exterior)[:-1], dtype=np.float64)
+
+
+def covered_area(deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray) -> shapely.Polygon:
+    """Area, mm, of all panels and voids after a motion (P, 3), with openings inside.
 
     Corners that panels share lie halfway between theirs where a connector is stretched.  Voids beside a trimmed panel
     are left out, because they may reach beyond it.
@@ -218,8 +224,8 @@ def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, m
     bridge = bridge if network.numbers is None else max(bridge, BRIDGED * network.panel_size)
     united = shapely.union_all(shapely.buffer(parts, bridge) if bridge else parts, grid_size=grid)
     united = shapely.buffer(united, -bridge) if bridge else united
-    largest = max(shapely.get_parts(united), key=lambda part: float(part.area))
-    return np.asarray(shapely.get_coordinates(shapely.get_exterior_ring(largest))[:-1], dtype=np.float64)
+    largest: shapely.Polygon = max(shapely.get_parts(united), key=lambda part: float(part.area))
+    return largest
 
 
 def moved_nodes(

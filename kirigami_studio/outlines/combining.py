@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from enum import Enum
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -14,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines.contour import as_contour, tidy
-from kirigami_studio.outlines.pieces import WORTH_SAYING, enclosed, largest_piece
+from kirigami_studio.outlines.pieces import WORTH_SAYING, enclosed, largest_piece, rings_of
 from kirigami_studio.outlines.placed import Placed
 
 #: Vertices are snapped to this share of the target's size: edges that were drawn onto each other leave no slivers.
@@ -41,40 +40,34 @@ class Half(Enum):
     BOTTOM = "bottom"
 
 
-def combined(target: Placed | None, ring: npt.ArrayLike, how: Combine, name: str, notes: Iterable[str] = ()) -> Placed:
-    """Join a drawn ring with the target.
+def combined(target: Placed | None, drawn: Placed, how: Combine, notes: Iterable[str] = ()) -> Placed:
+    """Join a drawn shape with the target; one that is taken from its inside leaves a hole.
 
     Parameters
     ----------
     target : Placed or None
-        Without one the ring becomes the target.
-    ring : (L, 2) float, mm
-    name : str
-        Of the new target where the ring is one by itself.
+        Without one the shape becomes the target.
     notes : iterable of str
-        What was changed when the ring was made.
+        What was changed when the shape was made.
 
     Raises
     ------
     TargetError
-        The ring is no shape, touches nothing of the target, leaves nothing of it, changes nothing or would cut a hole.
+        The shape touches nothing of the target, leaves nothing of it or changes nothing.
     """
-    drawn = Placed.from_ring(ring, name, notes)
     if how is Combine.NEW or target is None:
         return drawn
     old, new = target.polygon, drawn.polygon
     if old.intersection(new).area <= WORTH_SAYING * min(old.area, new.area):
         raise TargetError(BESIDE[how])
     region = JOINS[how](old, new, grid_size=SNAP * target.scale)
-    if how is Combine.SUBTRACT:
-        if old.contains_properly(new):
-            raise TargetError("combine.hole")
-        if region.area < LEAST_LEFT * old.area:
-            raise TargetError("combine.nothing_left")
+    if how is Combine.SUBTRACT and region.area < LEAST_LEFT * old.area:
+        raise TargetError("combine.nothing_left")
     kept, left_out = largest_piece(region)
-    if Polygon(kept).symmetric_difference(old).area <= WORTH_SAYING * old.area:
+    made = target.with_polygon(kept, (*notes, *left_out))
+    if made.polygon.symmetric_difference(old).area <= WORTH_SAYING * old.area:  # a tiny hole is none
         raise TargetError("combine.no_change")
-    return target.reshaped(tidy(as_contour(kept)), (*notes, *left_out))
+    return made
 
 
 #: What is said of a ring that touches nothing of the target.
@@ -104,8 +97,9 @@ def symmetric(target: Placed, half: Half) -> Placed:
     if not pieces:
         raise TargetError("combine.half_empty")
     turned = shapely.transform(kept, lambda points: _reflected(points, target, half))
-    ring, notes = largest_piece(shapely.union_all([kept, turned], grid_size=SNAP * target.scale))
-    return target.reshaped(_without_middle(tidy(as_contour(ring))), notes)
+    piece, notes = largest_piece(shapely.union_all([kept, turned], grid_size=SNAP * target.scale))
+    ring, holes = rings_of(piece)
+    return target.with_polygon(Polygon(_without_middle(tidy(as_contour(ring))), [*map(_without_middle, holes)]), notes)
 
 
 def _side_of(target: Placed, half: Half) -> BaseGeometry:

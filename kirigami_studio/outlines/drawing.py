@@ -14,12 +14,11 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import tr_n
 from kirigami_studio.outlines.combining import SNAP, Combine, combined
-from kirigami_studio.outlines.contour import as_contour, tidy
 from kirigami_studio.outlines.mirroring import Axis, Mirror, mirrored
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.pieces import WORTH_SAYING, enclosed
+from kirigami_studio.outlines.pieces import WORTH_SAYING, largest_piece
 from kirigami_studio.outlines.placed import Placed
 
 #: How far a copy lies beside what it was made of, mm.
@@ -65,7 +64,7 @@ class AlignedSide(Enum):
 class United:
     """The target that objects make."""
 
-    target: Placed  #: the largest piece of them, holes filled
+    target: Placed  #: the largest piece of them
     loose: frozenset[int] = frozenset()  #: objects that hang apart from it
 
 
@@ -118,11 +117,9 @@ class Drawing:
         if len(self.objects) == 1:
             return United(self.objects[0])
         region = self._region()
-        pieces = enclosed(region)
-        if not pieces:
-            raise TargetError("drawing.no_area")
+        piece, _ = largest_piece(region)
         polygons = [each.polygon for each in self.objects]
-        loose = frozenset(k for k, each in enumerate(polygons) if each.intersection(pieces[0]).area < 0.5 * each.area)
+        loose = frozenset(k for k, each in enumerate(polygons) if each.intersection(piece).area < 0.5 * each.area)
         lowest = next(each for k, each in enumerate(self.objects) if k not in loose)
         notes = [note for k, each in enumerate(self.objects) if k not in loose for note in each.outline.notes]
         if loose:
@@ -133,10 +130,7 @@ class Drawing:
                     len(loose),
                 )
             )
-        if (share := 1 - region.intersection(pieces[0]).area / pieces[0].area) > WORTH_SAYING:
-            notes.append(tr("Holes were filled ({percent:.2g} % of the area).", percent=100 * share))
-        ring = tidy(as_contour(_ring(pieces[0])))
-        return United(Placed.from_ring(ring, lowest.outline.name, dict.fromkeys(notes)), loose)
+        return United(Placed.from_polygon(piece, lowest.outline.name, dict.fromkeys(notes)), loose)
 
     def _region(self) -> BaseGeometry:
         polygons = [each.polygon for each in self.objects]
@@ -197,6 +191,20 @@ class Drawing:
         """The drawing without the selected objects."""
         return self.without(self.chosen)
 
+    def with_holes(self, filled: bool) -> Drawing:
+        """The objects with their holes filled or open; one object where a hole lies between several."""
+        made = replace(self, objects=tuple(each.with_holes(filled) for each in self.objects))
+        target = made.united().target
+        done = not (target.outline.holes if filled else target.outline.filled_holes)
+        return made if done else Drawing((target.with_holes(filled),), frozenset({0}))
+
+    def without_hole_at(self, place: tuple[float, float]) -> Drawing | None:
+        """The drawing with the hole of the topmost object around a place, mm, filled; None without one."""
+        for k in range(len(self.objects) - 1, -1, -1):
+            if (made := self.objects[k].without_hole_at(place)) is not None:
+                return replace(self, objects=(*self.objects[:k], made, *self.objects[k + 1 :]))
+        return None
+
     def ordered(self, order: Order) -> Drawing:
         """The selected objects above or below others; they stay selected."""
         every, chosen = list(range(len(self.objects))), set(self.chosen)
@@ -248,7 +256,7 @@ class Drawing:
         Raises
         ------
         TargetError
-            Nothing would be left or changed, or a hole would be cut.
+            Nothing would be left or changed.
         """
         chosen = self.chosen
         shapes = [self.objects[k].polygon for k in chosen]
@@ -265,12 +273,10 @@ class Drawing:
         parts = [each for each in shapely.get_parts(region) if isinstance(each, Polygon) and each.area > least]
         if not parts:
             raise TargetError("combine.nothing_shared" if how is Boolean.INTERSECT else "combine.nothing_left")
-        if how is Boolean.SUBTRACT and any(each.interiors for each in parts):
-            raise TargetError("combine.hole")
         if how is Boolean.UNION and len(parts) == len(chosen):
             raise TargetError("combine.apart")
         name = self.objects[chosen[0]].outline.name
-        made = tuple(Placed.from_ring(tidy(as_contour(_ring(each))), name) for each in parts)
+        made = tuple(Placed.from_polygon(each, name) for each in parts)
         below = [each for k, each in enumerate(self.objects[: chosen[-1]]) if k not in chosen]
         above = self.objects[chosen[-1] + 1 :]
         return Drawing((*below, *made, *above), frozenset(range(len(below), len(below) + len(made))))
@@ -285,8 +291,7 @@ class Drawing:
         """
         if how is Combine.NEW or not self.objects:
             return self.added(*_with_images(drawn, name, mirror))
-        images = [shapely.make_valid(Polygon(ring)) for ring in (drawn.ring, *mirror.all_images(drawn.ring))]
-        region = shapely.union_all(images)
+        region = shapely.union_all(mirror.united([drawn.polygon]))
         touched = [k for k, each in enumerate(self.objects) if _overlap(each.polygon, region)]
         if len(touched) < 2:
             index = touched[0] if touched else self.active or 0
@@ -296,7 +301,7 @@ class Drawing:
             return replace(self, objects=tuple(made.get(k, each) for k, each in enumerate(self.objects)))
         first = self.objects[touched[0]]
         whole = shapely.union_all([region, *(self.objects[k].polygon for k in touched)])
-        one = combined(first, _ring(enclosed(whole)[0]), Combine.ADD, name)
+        one = combined(first, Placed.from_polygon(largest_piece(whole)[0], name), Combine.ADD)
         rest = [k for k in range(len(self.objects)) if k not in touched[1:]]
         objects = tuple(one if k == touched[0] else self.objects[k] for k in rest)
         return Drawing(objects, frozenset({rest.index(touched[0])}))
@@ -314,7 +319,7 @@ class Drawing:
         region = self._region()
         left, bottom, right, top = region.bounds
         _, bridges = bridged(region, Merging(Join.BRIDGE), max(right - left, top - bottom))
-        return self.added(*(Placed.from_ring(_ring(each), BRIDGE) for each in bridges))
+        return self.added(*(Placed.from_polygon(each, BRIDGE) for each in bridges))
 
     def largest(self) -> Drawing:
         """The drawing without what hangs apart from its largest piece."""
@@ -332,11 +337,11 @@ def _with_images(drawn: Placed, name: str, mirror: Mirror) -> tuple[Placed, ...]
     """A drawn shape and its images: one object where they hang together, else several."""
     if mirror.axis is Axis.NONE:
         return (drawn,)
-    pieces = mirror.united([drawn.ring])
+    pieces = mirror.united([drawn.polygon])
     if len(pieces) == 1:
         return (mirrored(None, drawn, Combine.NEW, name, mirror),)
     own, notes = drawn.outline.name, drawn.outline.notes
-    return tuple(Placed.from_ring(_ring(each), own, notes) for each in pieces)
+    return tuple(Placed.from_polygon(each, own, notes) for each in pieces)
 
 
 def _overlap(one: BaseGeometry, other: BaseGeometry) -> bool:
@@ -345,8 +350,3 @@ def _overlap(one: BaseGeometry, other: BaseGeometry) -> bool:
 
 def _along(each: Placed, axis: int, way: float) -> Placed:
     return each.moved((way, 0.0) if axis == 0 else (0.0, way))
-
-
-def _ring(polygon: Polygon) -> FloatArray:
-    """The boundary (L, 2), first vertex not repeated."""
-    return np.asarray(polygon.exterior.coords[:-1], dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Letters -> one ring: a sheet is one piece, so each letter is moved until it overlaps the one before.
+"""Letters -> one piece: a sheet is one piece, so each letter is moved until it overlaps the one before.
 
 The dot of an i and the dots of an umlaut are joined to their letter by a bridge.
 """
@@ -25,8 +25,8 @@ STEP = 0.02
 MOST_LETTERS = 24
 
 
-def joined_letters(letters: Sequence[Sequence[FloatArray]]) -> tuple[FloatArray, tuple[str, ...]]:
-    """Return the outline of a word.
+def joined_letters(letters: Sequence[Sequence[FloatArray]]) -> tuple[Polygon, tuple[str, ...]]:
+    """Return the outline of a word, with counters such as that of an o.
 
     Parameters
     ----------
@@ -35,9 +35,9 @@ def joined_letters(letters: Sequence[Sequence[FloatArray]]) -> tuple[FloatArray,
 
     Returns
     -------
-    ring : (L, 2) float
+    word : shapely.Polygon
     notes : tuple of str
-        Filled counters, such as that of an o.
+        What was left out.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def _pushed(word: BaseGeometry, letter: BaseGeometry, height: float) -> BaseGeom
     return translate(letter, high - low - JOINT * height)
 
 
-def lettered(letters: Sequence[Sequence[FloatArray]], box: BoundingBox) -> tuple[FloatArray, tuple[str, ...]]:
+def lettered(letters: Sequence[Sequence[FloatArray]], box: BoundingBox) -> tuple[Polygon, tuple[str, ...]]:
     """The word that fills a box as far as its proportions allow, in the middle of it.
 
     Raises
@@ -96,9 +96,9 @@ def lettered(letters: Sequence[Sequence[FloatArray]], box: BoundingBox) -> tuple
     TargetError
         As :func:`joined_letters`, or a flat box.
     """
-    ring, notes = joined_letters(letters)
+    word, notes = joined_letters(letters)
     if min(box.size) <= 0:
         raise TargetError("text.flat_box")
-    low, high = ring.min(axis=0), ring.max(axis=0)
+    low, high = np.array(word.bounds).reshape(2, 2)
     scale = float(np.min(np.array(box.size) / (high - low)))
-    return (ring - 0.5 * (low + high)) * scale + box.middle, notes
+    return shapely.transform(word, lambda points: (points - 0.5 * (low + high)) * scale + box.middle), notes

@@ -19,8 +19,25 @@ from kirigami_studio.outlines.contour import thinned
 from kirigami_studio.outlines.crossings import CLEARLY_MEANT
 from kirigami_studio.outlines.joining import open_contour
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.parts import QUARTER, Part, SourceParts, text_left_out
-from kirigami_studio.outlines.pieces import enclosed, largest_piece, united
+from kirigami_studio.outlines.parts import (
+    QUARTER,
+    DrawnPartKind,
+    Part,
+    SourceParts,
+    bores_of_pens,
+    inner_contours,
+    shell,
+    text_left_out,
+)
+from kirigami_studio.outlines.pieces import (
+    LEAST_BREADTH,
+    STROKED_BREADTH,
+    enclosed,
+    has_seen_holes,
+    largest_piece,
+    rings_of,
+    united,
+)
 
 #: Widths of bridges and of strokes, shares of the size of the chosen parts: the usual one, the least and the most.
 USUAL_BRIDGE, USUAL_STROKE = 0.04, 0.02
@@ -58,6 +75,7 @@ class Merging:
     #: source units; width of lines that have none of their own; None for the usual share of the size.
     stroke: float | None = None
     tightness: float = USUAL_TIGHTNESS  #: 0..1
+    fill_holes: bool | None = None  #: whether holes are filled; None for those around which only a line would stay
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,6 +123,14 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
                 )
             )
         region = united(regions, size)
+        if merging.as_painted:
+            lines = [part for part in parts if part.lines and part.kind is not DrawnPartKind.FILLED]
+            painted = [_with_pen(part, merging, size) for part in lines]
+            shown = {part.number: _region(part, merging, size, whole) for part in parts}
+            region = region.difference(shapely.union_all(bores_of_pens(painted, shown, 0.0)))
+        else:
+            contours = inner_contours([part for part in parts if part.kind is DrawnPartKind.CLOSED])
+            region = region.difference(shapely.union_all([Polygon(shell(part.region)) for part in contours]))
         if merging.join is Join.BRIDGE:
             region, bridges = bridged(region, merging, size)
             if bridges:
@@ -116,7 +142,10 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
                     )
                 )
     alone = len(parts) == 1 < len(source.parts) and parts[0].is_named
-    outline, shape = _outline(source, region, notes, parts[0].name if alone else source.name)
+    breadth = _breadth(parts, merging.as_painted)
+    outline, shape = _outline(
+        source, region, notes, parts[0].name if alone else source.name, breadth, merging.fill_holes
+    )
     return Merged(outline, shape, bridges)
 
 
@@ -171,23 +200,47 @@ def usual_outline(source: SourceParts) -> Outline:
     if ring is not None and not any(part.lines for part in parts) and max(areas) > CLEARLY_MEANT * sum(areas):
         # Left as it is, so that crossings are judged and named.
         return _outline(source, ring, notes, source.name)[0]
-    return _outline(source, choice.region, notes, source.name)[0]
+    return _outline(source, choice.region, notes, source.name, _breadth(parts, choice.as_painted))[0]
+
+
+def _breadth(parts: Sequence[Part], as_painted: bool) -> float:
+    """How broad most of the shape of some parts is round holes, by :func:`has_seen_holes`."""
+    if as_painted:
+        return STROKED_BREADTH
+    return 0.0 if all(part.is_letter for part in parts) else LEAST_BREADTH  # a letter of a light face is one, too
 
 
 def _outline(
-    source: SourceParts, region: BaseGeometry | FloatArray, notes: Sequence[str], name: str
+    source: SourceParts,
+    region: BaseGeometry | FloatArray,
+    notes: Sequence[str],
+    name: str,
+    breadth: float = 0.0,
+    fill_holes: bool | None = None,
 ) -> tuple[Outline, Polygon]:
-    """The outline of a region or a ring, judged with y as in the source; and its polygon."""
+    """The outline of a region or a ring, judged with y as in the source; and its polygon.
+
+    Unless it is said, holes are open where they are seen as such, by ``breadth``.
+    """
     way = np.array([1.0, -1.0]) if source.is_turned else np.ones(2)
     dropped: tuple[str, ...] = ()
+    holes: list[FloatArray] = []
+    are_seen = True
     if isinstance(region, np.ndarray):
         ring = region * way
     else:
-        ring, dropped = largest_piece(shapely.transform(region, lambda points: points * way))
-    found = Outline.from_points(thinned(ring), name=name, notes=(*notes, *dropped), unit=source.unit)
+        turned = shapely.transform(region, lambda points: points * way)
+        piece, dropped = largest_piece(turned)
+        ring, holes = rings_of(piece)
+        are_seen = not holes or (has_seen_holes(piece, turned, breadth) if fill_holes is None else not fill_holes)
+    found = Outline.from_points(
+        thinned(ring), name=name, notes=(*notes, *dropped), unit=source.unit, holes=[thinned(hole) for hole in holes]
+    )
     if source.is_turned:
-        found = Outline((found.points * way)[::-1], found.name, found.notes, found.size, found.unit)
-    return found, Polygon(ring * way)
+        turned_holes = tuple((hole * way)[::-1] for hole in found.holes)
+        found = replace(found, points=(found.points * way)[::-1], holes=turned_holes)
+    found = found if are_seen else found.filled
+    return found, Polygon(ring * way, [hole * way for hole in holes] if are_seen else [])
 
 
 def _rest(source: SourceParts, parts: Sequence[Part]) -> list[str]:
@@ -206,9 +259,14 @@ def _region(part: Part, merging: Merging, size: float, whole: float) -> BaseGeom
     """The area of a part; ``whole`` is the size of the drawing."""
     if not merging.as_painted or not part.lines:
         return part.seen(whole)
+    return _with_pen(part, merging, size).seen(0.0, with_lines=True)
+
+
+def _with_pen(part: Part, merging: Merging, size: float) -> Part:
+    """A part of lines with the width that they are painted with."""
     width = part.pen.width or (USUAL_STROKE * size if merging.stroke is None else merging.stroke)
     _check_width("parts.stroke_width", width, size)
-    return replace(part, pen=replace(part.pen, width=width)).seen(0.0, with_lines=True)
+    return replace(part, pen=replace(part.pen, width=width))
 
 
 def _check_width(code: str, width: float, size: float) -> None:
@@ -234,7 +292,7 @@ def bridged(region: BaseGeometry, merging: Merging, size: float) -> tuple[BaseGe
         _bridge(pieces[one], pieces[other], width, size)
         for one, other in zip(tree.row.tolist(), tree.col.tolist(), strict=True)
     )
-    return shapely.union_all([region, *pieces, *bridges]), bridges
+    return shapely.union_all([region, *bridges]), bridges
 
 
 def _bridge(one: BaseGeometry, other: BaseGeometry, width: float, size: float) -> Polygon:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 import shapely
 from shapely.geometry import Polygon, box
-from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
@@ -85,14 +85,12 @@ class Mirror:
         down, across, back = self.all_images(points)
         return np.concatenate([points, down[-2::-1], across[1:], back[-2:0:-1]])
 
-    def united(self, rings: Iterable[npt.ArrayLike]) -> list[Polygon]:
-        """Everything that the rings and their images cover, as separate pieces without holes of slivers."""
-        shapes: list[BaseGeometry] = []
-        for ring in rings:
-            points = np.asarray(ring, dtype=np.float64)
-            shapes += [shapely.make_valid(Polygon(part)) for part in (points, *self.all_images(points))]
-        size = max(float(np.max(np.ptp(shapely.get_coordinates(shape), axis=0))) for shape in shapes)
-        whole = shapely.union_all(shapes, grid_size=SNAP * size)
+    def united(self, shapes: Iterable[Polygon]) -> list[Polygon]:
+        """Everything that shapes, mm, and their images cover, as separate pieces without slivers."""
+        own = list(shapes)
+        size = max(float(np.max(np.ptp(shapely.get_coordinates(shape), axis=0))) for shape in own)
+        every = [shapely.transform(shape, partial(self.image, factors=one)) for one in self.images for shape in own]
+        whole = shapely.union_all([*map(shapely.make_valid, (*own, *every))], grid_size=SNAP * size)
         return [part for part in shapely.get_parts(whole) if isinstance(part, Polygon) and part.area > 0]
 
     def evened(self, drawn: Placed) -> Placed:
@@ -110,11 +108,11 @@ class Mirror:
         right = x if self.axis is not Axis.LEVEL else x - far
         top = y if self.axis is not Axis.UPRIGHT else y - far
         side = drawn.polygon.intersection(box(right, top, x + far, y + far))
-        rings = [part.exterior.coords[:-1] for part in shapely.get_parts(side) if isinstance(part, Polygon)]
-        if not rings:
+        parts = [part for part in shapely.get_parts(side) if isinstance(part, Polygon)]
+        if not parts:
             raise TargetError("mirror.nothing_on_side")
-        ring, notes = largest_piece(shapely.union_all(self.united(rings)))
-        return drawn.reshaped(ring, (*drawn.outline.notes, *notes))
+        piece, notes = largest_piece(shapely.union_all(self.united(parts)))
+        return drawn.with_polygon(piece, (*drawn.outline.notes, *notes))
 
 
 def mirrored(target: Placed | None, drawn: Placed, how: Combine, name: str, mirror: Mirror) -> Placed:
@@ -127,13 +125,13 @@ def mirrored(target: Placed | None, drawn: Placed, how: Combine, name: str, mirr
     """
     notes = drawn.outline.notes
     if mirror.axis is Axis.NONE:
-        return drawn if how is Combine.NEW or target is None else combined(target, drawn.ring, how, name, notes)
-    pieces = mirror.united([drawn.ring])
+        return combined(target, drawn, how, notes)
+    pieces = mirror.united([drawn.polygon])
     if how is Combine.NEW or target is None:
         if len(pieces) > 1:
             raise TargetError("mirror.images_apart")
-        ring, more = largest_piece(pieces[0])
-        return Placed.from_ring(ring, drawn.outline.name, (*notes, *more))
+        piece, more = largest_piece(pieces[0])
+        return Placed.from_polygon(piece, drawn.outline.name, (*notes, *more))
     for piece in pieces:
-        target = combined(target, np.array(piece.exterior.coords[:-1]), how, name, notes)
+        target = combined(target, Placed.from_polygon(piece, name, notes), how, notes)
     return target

@@ -5,15 +5,18 @@ of the source, y up; :mod:`~kirigami_studio.outlines.merging` makes one outline 
 
 One rule says which of them are the silhouette that is seen, for all kinds of files (:class:`UsualChoice`):
 
+- What is hardly seen counts where nothing else is closed.
 - What is filled counts with its stroke.  Broad lines are painted; lines of a middling width are if they run round
   filled shapes or show more than what they enclose; thin lines count by what they enclose.
 - Of what is painted and of what thin lines enclose, the silhouette with the larger area is taken, whatever lies inside.
 - Thin lines that would surround all of it, were they closed, are an open contour, and nothing is taken.
+- Holes are what filled shapes and broad lines leave unpainted, and thin contours right within another one of the same
+  layer, colour and width; contours of others are engraved.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Literal
@@ -53,6 +56,9 @@ SHOWS_MORE, ROUND_FILLED = 0.02, 0.5
 LARGER = 1e-6
 #: A rectangle of lines whose edges are nearer to the paper's than this share of the paper is its frame.
 FRAME = 0.05
+#: More contours than this within another one are a drawing on it.  Two contours whose boxes differ by less than this
+#: share of the size are one that is drawn twice.
+MOST_BORES, DRAWN_TWICE = 40, 1e-3
 #: Cosine of the turn of a line below which it has a corner.
 STRAIGHT = 0.996
 #: Vertices of a quarter circle at the ends and corners of strokes, and deviation of stroked lines, share of the size.
@@ -81,6 +87,7 @@ class StrokeStyle:
     cap: Cap = "round"  #: "round", "flat" or "square"
     join: Corner = "round"  #: "round", "mitre" or "bevel"
     mitre_limit: float = 4.0  #: length of a corner over the width, above which it is cut off
+    is_on_paper: bool = False  #: whether the width is that of a plotter's pen, which says nothing of the drawing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,6 +107,7 @@ class Part:
     is_named: bool = True  #: whether the name is the source's own
     is_letter: bool = False  #: whether it is a letter of a text
     is_aside: bool = False  #: whether it is a measure or a construction line: it counts where nothing else is closed
+    is_faint: bool = False  #: whether it is hardly seen, such as a shadow: it counts where nothing else is closed
     #: (L, 2) float, source units; of a shape with one subpath that subpath, crossings and all.
     ring: FloatArray | None = None
 
@@ -331,6 +339,11 @@ def _usual(source: SourceParts) -> UsualChoice:
     parts, size = source.parts, source.size
     if any(part.is_closed and not part.is_aside for part in parts):
         parts = tuple(part for part in parts if not part.is_aside)
+    faint = [part for part in parts if part.is_faint and part.is_closed]
+    if any(part.is_closed and not part.is_faint for part in parts):
+        parts = tuple(part for part in parts if not part.is_faint)
+    else:
+        faint = []
     shapes = [part for part in parts if part.kind is DrawnPartKind.FILLED and not part.is_letter]
     lines = [part for part in parts if part.kind is not DrawnPartKind.FILLED]
     letters = [part for part in parts if part.is_letter]
@@ -340,12 +353,12 @@ def _usual(source: SourceParts) -> UsualChoice:
         return UsualChoice(numbers, numbers, False, is_one, region=united([part.region for part in letters], size))
     lines = _without_frame(lines, source.paper) if len(parts) > 1 else lines
     extent = _extent(lines)
-    broad = [part for part in lines if part.pen.width >= BROAD * extent]
-    thin = [part for part in lines if part.pen.width < BROAD * extent]
+    broad = [part for part in lines if not part.pen.is_on_paper and part.pen.width >= BROAD * extent]
+    thin = [part for part in lines if part not in broad]
     solid = {part.number: part.seen(size) for part in shapes}
     solid.update((part.number, part.seen(size, True)) for part in broad)
     open_at = _open_contour(thin, solid, size)
-    middling = [part for part in thin if part.pen.width >= MIDDLING * extent]
+    middling = [part for part in thin if not part.pen.is_on_paper and part.pen.width >= MIDDLING * extent]
     shown = {part.number: part.seen(size, True) for part in middling} if open_at is None else {}
     is_round = bool(shown) and _is_round(middling, solid)
     shown = shown if is_round or _shows_more(middling, shown, solid, size) else {}
@@ -361,10 +374,17 @@ def _usual(source: SourceParts) -> UsualChoice:
         number = max(lines, key=lambda part: part.worth).number
         return UsualChoice((number,), (number,), False, False, open_at or opening(_all_lines(lines), size), len(lines))
     silhouette = Polygon(enclosed(united([kinds[part.number] for part in taken], size))[0])
-    numbers = tuple(part.number for part in _outer(taken, kinds))
+    outer = _outer(taken, kinds)
     others = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
+    others += [part.region for part in faint]
     considered = tuple(number for number in kinds if takes_rings or not _is_letter_apart(source, number, taken))
     closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
+    bored = _bored(taken, {_pen(part) for part in outer}) if takes_rings else []
+    numbers = tuple(part.number for part in taken if part in outer or part in bored)
+    if takes_rings:
+        bores = [ring[part.number] for part in bored]
+    else:
+        bores = bores_of_pens([part for part in lines if part.number in considered], kinds, size)
     plain = (
         open_at is None
         and bool(closed)
@@ -383,8 +403,55 @@ def _usual(source: SourceParts) -> UsualChoice:
         sum(number in ring for number in ring if number not in numbers) if takes_rings else 0,
         0 if takes_rings else len(ring) + sum(not part.is_closed for part in thin),
         any(part not in taken and _outside(part.region, silhouette) > 0.0 for part in letters),
-        united([kinds[number] for number in considered], size),
+        united([kinds[number] for number in considered], size).difference(shapely.union_all(bores)),
     )
+
+
+def _pen(part: Part) -> tuple[str, str, float]:
+    """What contours of one kind have in common."""
+    return part.layer, part.colour, part.pen.width
+
+
+def _bored(parts: Sequence[Part], pens: Collection[tuple[str, str, float]]) -> list[Part]:
+    """Contours that are holes: those within others of one of some pens, unless there are too many."""
+    found = [part for pen in pens for part in inner_contours([part for part in parts if _pen(part) == pen])]
+    return found if len(found) <= MOST_BORES else []
+
+
+def inner_contours(parts: Sequence[Part]) -> list[Part]:
+    """The contours of lines that lie right within an outer one, all around apart from it."""
+    shells = [Polygon(shell(part.region)) for part in parts]
+    if len(shells) < 2:
+        return []
+    boxes = shapely.bounds(shells)
+    far = DRAWN_TWICE * float(np.max(boxes[:, 2:] - boxes[:, :2]))
+    outer, inner = shapely.STRtree(shells).query(shells, predicate="contains_properly")
+    depth: dict[int, list[int]] = {}
+    for around, index in zip(outer.tolist(), inner.tolist(), strict=True):
+        of_shell = depth.setdefault(index, [])
+        if all(np.max(np.abs(boxes[around] - boxes[other])) > far for other in (index, *of_shell)):
+            of_shell.append(around)
+    return [parts[index] for index, around in sorted(depth.items()) if len(around) == 1]
+
+
+def bores_of_pens(lines: Sequence[Part], regions: Mapping[int, BaseGeometry], size: float) -> list[BaseGeometry]:
+    """What closed lines leave open as they are painted, where nothing else lies within.
+
+    Parameters
+    ----------
+    regions : mapping of int to shapely geometry, source units
+        By the parts' numbers, everything that is taken.
+    size : float, source units
+        Of the drawing.
+    """
+    found: list[BaseGeometry] = []
+    for part in lines:
+        if part.is_closed and part.pen.width > 0.0:
+            pen = replace(part, region=Polygon()).seen(size, with_lines=True)
+            hole = part.region.difference(pen)
+            others = (one for number, one in regions.items() if number != part.number)
+            found += [] if any(one.intersection(hole).area > 0.0 for one in others) else [hole]
+    return found
 
 
 def _is_letter_apart(source: SourceParts, number: int, taken: Sequence[Part]) -> bool:

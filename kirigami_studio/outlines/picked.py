@@ -23,7 +23,7 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines.background import colours_in_lab, separated
 from kirigami_studio.outlines.parts import DrawnPartKind, Part, Strokes
-from kirigami_studio.outlines.read_image import MOST_MEGABYTES, alpha_of, on_paper, opened_image, stretched
+from kirigami_studio.outlines.read_image import MOST_MEGABYTES, alpha_of, in_pixels, on_paper, opened_image, stretched
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.trace import trace
 
@@ -74,9 +74,9 @@ def picked_part(path: str | Path, strokes: Strokes) -> Part:
         ink = _connected(beside - _nearest(looked.colours, taken), taken)
         if ink is None:
             raise TargetError("object.nothing_there")
-        ring, _ = trace(ink)
+        piece, _ = trace(ink)
         below = looked.colours.shape[0] * looked.reduction - looked.size[1]
-        region = Polygon((ring + 0.5) * looked.reduction - (0.0, below)).buffer(0)
+        region = in_pixels(piece, (0.5, 0.5 - below / looked.reduction), looked.reduction)
         return Part(0, tr("object"), "", "", DrawnPartKind.FILLED, max(_pieces(region), key=lambda one: one.area))
 
 

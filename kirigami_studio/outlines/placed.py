@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.foundation.arrays import FloatArray
@@ -15,7 +16,8 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines.contour import area_and_centroid, as_contour, tidy, unit_frame
 from kirigami_studio.outlines.crossings import untangled
 from kirigami_studio.outlines.nodes import Nodes
-from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.outline import Outline, cut_out
+from kirigami_studio.outlines.pieces import rings_of
 
 #: Longer side (mm) that an outline without a real size is given on the board.
 BOARD_MM = 100.0
@@ -56,12 +58,21 @@ class Placed:
         return cls(outline, scale, (x, y))
 
     @classmethod
-    def from_ring(cls, ring: npt.ArrayLike, name: str, notes: Iterable[str] = ()) -> Placed:
+    def from_ring(
+        cls,
+        ring: npt.ArrayLike,
+        name: str,
+        notes: Iterable[str] = (),
+        holes: Sequence[npt.ArrayLike] = (),
+        filled_holes: Sequence[npt.ArrayLike] = (),
+    ) -> Placed:
         """Make raw vertices an outline in their place.
 
         Parameters
         ----------
         ring : (L, 2) float, mm, y up
+        holes, filled_holes : sequence of (H, 2) float, mm
+            As of :meth:`Outline.from_points`.
 
         Raises
         ------
@@ -70,24 +81,52 @@ class Placed:
         """
         contour, origin, span = unit_frame(tidy(as_contour(ring)))
         clean, repairs = untangled(contour, origin, span)
+        if len(holes):  # those at the rim change its middle
+            clean, inner, dropped = cut_out(clean, [(as_contour(hole) - origin) / span for hole in holes])
+            holes, repairs = [hole * span + origin for hole in inner], (*repairs, *dropped)
         clean = clean * span + origin
         length = float(np.max(np.ptp(clean, axis=0)))
         if length > LARGEST_MM:
             raise TargetError("placed.too_large", limit=LARGEST_MM, length=length)
         area, centroid = area_and_centroid(clean)
         place = (float(centroid[0]), float(centroid[1]))
-        outline = replace(Outline.from_points(clean, name, (*notes, *repairs), "mm"), place=place)
-        return cls(outline, math.sqrt(abs(area)), place)
+        outline = Outline.from_points(clean, name, (*notes, *repairs), "mm", holes, filled_holes)
+        return cls(replace(outline, place=place), math.sqrt(abs(area)), place)
+
+    @classmethod
+    def from_polygon(cls, polygon: Polygon, name: str, notes: Iterable[str] = ()) -> Placed:
+        """Make a polygon, mm, an outline with its holes.
+
+        Raises
+        ------
+        TargetError
+            As :meth:`from_ring`.
+        """
+        ring, holes = rings_of(polygon)
+        return cls.from_ring(tidy(as_contour(ring)), name, notes, holes)
 
     @property
     def ring(self) -> FloatArray:
-        """(L, 2) float, mm: the outline's vertices on the board."""
-        return self.outline.points * self.scale + self.centre
+        """(L, 2) float, mm: the outer ring on the board."""
+        return self._on_board(self.outline.points)
+
+    @property
+    def holes(self) -> tuple[FloatArray, ...]:
+        """(H, 2) float, mm, each: the holes on the board."""
+        return tuple(map(self._on_board, self.outline.holes))
+
+    @property
+    def rings(self) -> tuple[FloatArray, ...]:
+        """The outer ring, then the holes, mm."""
+        return self.ring, *self.holes
 
     @property
     def polygon(self) -> Polygon:
-        """The same as a shapely polygon, mm."""
-        return Polygon(self.ring)
+        """The same as a shapely polygon with its holes, mm."""
+        return Polygon(self.ring, self.holes)
+
+    def _on_board(self, points: FloatArray) -> FloatArray:
+        return points * self.scale + self.centre
 
     @property
     def size(self) -> tuple[float, float]:
@@ -96,8 +135,29 @@ class Placed:
         return width, height
 
     def reshaped(self, ring: npt.ArrayLike, notes: Iterable[str] = ()) -> Placed:
-        """The same target with other vertices (L, 2), mm; notes on the old ones are dropped."""
-        return Placed.from_ring(ring, self.outline.name, notes)
+        """The same target with another outer ring (L, 2), mm; notes on the old one are dropped.
+
+        Its holes stay where they are; one that reaches out of the ring becomes a notch.
+        """
+        filled = map(self._on_board, self.outline.filled_holes)
+        return Placed.from_ring(ring, self.outline.name, notes, self.holes, tuple(filled))
+
+    def with_polygon(self, polygon: Polygon, notes: Iterable[str] = ()) -> Placed:
+        """The same target as another polygon with its holes, mm; those that were filled stay where they are."""
+        ring, holes = rings_of(polygon)
+        filled = map(self._on_board, self.outline.filled_holes)
+        return Placed.from_ring(tidy(as_contour(ring)), self.outline.name, notes, holes, tuple(filled))
+
+    def with_holes(self, filled: bool) -> Placed:
+        """The same target with all holes filled or open."""
+        return replace(self, outline=self.outline.with_holes(filled))
+
+    def without_hole_at(self, place: tuple[float, float]) -> Placed | None:
+        """The same target with the hole around a place, mm, filled; None where there is none."""
+        for index, hole in enumerate(self.holes):
+            if shapely.contains_xy(Polygon(hole), *place):
+                return replace(self, outline=self.outline.without_hole(index))
+        return None
 
     def mapped(self, matrix: npt.ArrayLike, shift: npt.ArrayLike) -> Placed:
         """The same target with every point ``p`` (mm) at ``p @ matrix + shift``; its nodes and handles go along.
@@ -107,8 +167,12 @@ class Placed:
         TargetError
             As :meth:`from_ring`.
         """
-        linear = np.asarray(matrix, dtype=np.float64)
-        made = self.reshaped(self.ring @ linear + np.asarray(shift, dtype=np.float64))
+        linear, way = np.asarray(matrix, dtype=np.float64), np.asarray(shift, dtype=np.float64)
+        holes, filled = (
+            [self._on_board(hole) @ linear + way for hole in some]
+            for some in (self.outline.holes, self.outline.filled_holes)
+        )
+        made = Placed.from_ring(self.ring @ linear + way, self.outline.name, (), holes, filled)
         nodes, count = self.outline.nodes, len(self.outline.points)
         if nodes is None or len(made.outline.points) != count:
             return made

@@ -75,7 +75,8 @@ def reach_of(outline: Outline, grid: tuple[int, int]) -> Reach:
     shape = outline.polygon.simplify(COARSENESS * panel)
     radius = 0.5 * NEEDED_PANELS * panel
     arms = _parts(shape.difference(_there_and_back(shape, -radius)), panel)
-    notches = _parts(_there_and_back(shape, radius).difference(shape), panel)
+    whole = Polygon(shape.exterior)  # a hole is cut out of the panels, however small it is
+    notches = _parts(_there_and_back(whole, radius).difference(whole), panel)
     share = float(sum(Polygon(ring).area for ring in (*arms, *notches)))
     back = turn_back(outline)
     if back.angle < LIMIT + BEYOND:

@@ -20,8 +20,8 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import SourceParts
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 
-#: Keys under which an object may hold its vertices, the first present one counts.
-VERTEX_KEYS = ("outline", "points")
+#: Keys under which an object may hold its vertices, the first present one counts; and its rings, the outer one first.
+VERTEX_KEYS, RINGS = ("outline", "points"), "rings"
 UNITS = ("mm", "px")
 #: Bytes at the beginning of a file by which its kind is told.
 BEGINNING = 4096
@@ -105,7 +105,8 @@ def target_files(folder: Path) -> list[Path]:
 def read_json(path: str | Path) -> Outline:
     """Read ``[[x, y], ...]``, ``{"outline": [[x, y], ...]}`` or ``{"points": [[x, y], ...]}``, y up.
 
-    An object may also carry ``"name"`` and ``"unit"`` ("mm" or "px").
+    ``{"rings": [[[x, y], ...], ...]}`` has holes after its outer ring.  An object may also carry ``"name"`` and
+    ``"unit"`` ("mm" or "px").
 
     Raises
     ------
@@ -120,11 +121,21 @@ def read_json(path: str | Path) -> Outline:
         while isinstance(stored, dict):
             name = stored["name"] if isinstance(stored.get("name"), str) else name
             unit = stored["unit"] if stored.get("unit") in UNITS else unit
+            if RINGS in stored:
+                return _ringed(stored[RINGS], name, unit)
             key = next((key for key in VERTEX_KEYS if key in stored), None)
             if key is None:
                 raise TargetError("json_outline.no_vertices")
             stored = stored[key]
         return Outline.from_points(_vertices(stored), name=name, unit=unit)
+
+
+def _ringed(stored: Any, name: str, unit: str) -> Outline:
+    """An outer ring, and the holes in it."""
+    if not isinstance(stored, list) or not stored:
+        raise TargetError("json_outline.not_a_list", value=stored)
+    outer, *holes = (_vertices(ring) for ring in stored)
+    return Outline.from_points(outer, name=name, unit=unit, holes=holes)
 
 
 def _refuse_constant(constant: str) -> NoReturn:

@@ -11,9 +11,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
+import shapely
 from PIL import Image, ImageOps, UnidentifiedImageError
 from scipy import ndimage
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
@@ -21,6 +24,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.background import middle_of, opacity_level, separated
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, numbered, parts_of_region
+from kirigami_studio.outlines.pieces import has_seen_holes, rings_of
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.trace import LEAST_PIXELS, trace
 
@@ -43,6 +47,9 @@ MOST_COLOURS, COLOUR_SIDE, LEAST_OF_COLOUR, LEAST_CHROMA = 8, 768, 0.005, 48
 MOST_PIXELS_IN_COLOUR = 25_000_000
 #: A picture of more regions is noise; a colour of more specks is texture.
 MOST_SPECKS, TEXTURE = 10_000, 200
+
+#: A shape in a picture is one to be asked about from this share of the largest one's area on; many make noise.
+ISLAND, MOST_ISLANDS = 0.1, 20
 
 #: As Pillow calls them; of an animation the first picture is read.
 FORMATS = ("PNG", "JPEG", "BMP", "WEBP", "TIFF", "GIF", "AVIF")
@@ -111,9 +118,31 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
     with decoding(path, "source.image_damaged"):
         levels = _levels(content)
         ink = _ink(levels, threshold)
-        ring, notes = trace(ink)
-        outline = Outline.from_points(ring * levels.reduction, name=path.stem, notes=(*levels.notes, *notes), unit="px")
-        return _in_picture(outline, (ring + 0.5) * levels.reduction, levels)
+        piece, notes = trace(ink)
+        if threshold is None and not (levels.is_plain and is_alone(np.bincount(ndimage.label(ink > 0)[0].ravel())[1:])):
+            notes = (*notes, _choices())
+        outline = _outline(piece, path.stem, (*levels.notes, *notes), levels.reduction, levels.is_plain)
+        return _in_picture(outline, (rings_of(piece)[0] + 0.5) * levels.reduction, levels)
+
+
+def _outline(piece: Polygon, name: str, notes: tuple[str, ...], reduction: int, is_plain: bool) -> Outline:
+    """The outline of a traced piece, pixels; its holes are open where it is plain that they are some."""
+    ring, holes = rings_of(piece)
+    found = Outline.from_points(ring * reduction, name, notes, unit="px", holes=[hole * reduction for hole in holes])
+    return found if is_plain and has_seen_holes(piece) else found.filled
+
+
+def is_alone(areas: npt.ArrayLike) -> bool:
+    """Whether only the largest of several regions can be meant, by their areas."""
+    ranked = np.sort(np.asarray(areas, dtype=np.float64))[::-1]
+    return len(ranked) < 2 or ranked[1] < ISLAND * ranked[0] or ranked[0] < 0.5 * float(np.sum(ranked[MOST_ISLANDS:]))
+
+
+def _choices() -> str:
+    return tr(
+        "More than one shape may be meant in this picture: check what was taken. --object X,Y takes the one at a "
+        "place, --parts those that 'kirigami-studio parts FILE' lists."
+    )
 
 
 def image_parts(path: str | Path, threshold: float | None = None, in_colour: bool = True) -> SourceParts:
@@ -165,14 +194,19 @@ def _regions(ink: FloatArray, reduction: int, layer: str, colour: str) -> tuple[
         window = (slice(top, rows.stop + MARGIN), slice(left, columns.stop + MARGIN))
         field, own = ink[window], labels[window] == index + 1
         try:
-            ring, _ = trace(np.where(own, field, np.where(field > 0, -field, field)))
+            piece, _ = trace(np.where(own, field, np.where(field > 0, -field, field)))
         except TargetError:
             continue  # thinner than a pixel
         below = ink.shape[0] - window[0].start - field.shape[0]
-        region = Polygon((ring + np.array([left, below])) * reduction).buffer(0)
+        region = in_pixels(piece, (left, below), reduction)
         like = Part(0, "", layer, colour, DrawnPartKind.FILLED, Polygon())
         parts += parts_of_region(region, like)
     return parts, count - len(order)
+
+
+def in_pixels(piece: Polygon, shift: tuple[float, float], reduction: int) -> BaseGeometry:
+    """A traced piece, moved and enlarged to source pixels."""
+    return shapely.transform(piece, lambda points: (points + shift) * reduction).buffer(0)
 
 
 def _colours(content: bytes) -> list[tuple[str, FloatArray, int]]:
@@ -264,8 +298,8 @@ def outline_of_mask(mask: BoolArray, name: str) -> Outline:
         raise TargetError("mask.wrong_shape", shape=mask.shape)
     if not mask.any():
         raise TargetError("mask.empty")
-    ring, notes = trace(np.where(mask, 0.5, -0.5))
-    return Outline.from_points(ring, name=name, notes=notes, unit="px")
+    piece, notes = trace(np.where(mask, 0.5, -0.5))
+    return _outline(piece, name, notes, 1, True)
 
 
 def opened_image(content: bytes, formats: tuple[str, ...] = FORMATS, most_pixels: int | None = None) -> Image.Image:

@@ -36,7 +36,7 @@ def stroked(points: npt.ArrayLike) -> Placed:
     """
     ring, notes = smoothed_stroke(points)
     drawn = Placed.from_ring(ring, "drawing", notes)
-    return drawn.reshaped(_thinned(drawn.polygon, STROKE_ERROR * drawn.scale), drawn.outline.notes)
+    return drawn.with_polygon(drawn.polygon.simplify(STROKE_ERROR * drawn.scale), drawn.outline.notes)
 
 
 def simplified(target: Placed, strength: float) -> Placed:
@@ -50,8 +50,9 @@ def simplified(target: Placed, strength: float) -> Placed:
     tolerance = COARSEST * _checked(strength, "simplifying.strength") ** 2 * target.scale
     if tolerance == 0.0:
         return target
-    ring = _thinned(target.polygon, tolerance)
-    return target.reshaped(ring) if 3 <= len(ring) < len(target.outline.points) else target
+    simple = target.polygon.simplify(tolerance)
+    fewer = shapely.get_num_coordinates(simple) < shapely.get_num_coordinates(target.polygon)
+    return target.with_polygon(simple) if fewer and isinstance(simple, Polygon) and not simple.is_empty else target
 
 
 def smoothed(target: Placed, strength: float) -> Placed:
@@ -65,13 +66,19 @@ def smoothed(target: Placed, strength: float) -> Placed:
     sigma = SMOOTHEST * _checked(strength, "smoothing.strength") ** 2 * SAMPLES
     if sigma == 0.0:
         return target
-    samples = resampled(target.ring, SAMPLES)
-    calm: FloatArray = gaussian_filter1d(samples, sigma, axis=0, mode="wrap")
+    rings = [_calmed(ring, sigma) for ring in target.rings]
+    shape = Polygon(rings[0], rings[1:]) if len(rings) > 1 else target.reshaped(rings[0]).polygon
+    return target.with_polygon(shape.simplify(STROKE_ERROR * target.scale))
+
+
+def _calmed(ring: FloatArray, sigma: float) -> FloatArray:
+    """A ring (L, 2) smoothed over ``sigma`` of its ``SAMPLES``; its area and their middle stay."""
+    calm: FloatArray = gaussian_filter1d(resampled(ring, SAMPLES), sigma, axis=0, mode="wrap")
+    before, middle = area_and_centroid(ring)
     area, centroid = area_and_centroid(calm)
-    if area <= 0:
+    if area / before <= 0:
         raise TargetError("smoothing.nothing_left")
-    grown = (calm - centroid) * (target.scale / math.sqrt(area)) + target.centre
-    return target.reshaped(_thinned(target.reshaped(grown).polygon, STROKE_ERROR * target.scale))
+    return (calm - centroid) * math.sqrt(before / area) + middle
 
 
 def turned(target: Placed, angle: float) -> Placed:
@@ -113,11 +120,6 @@ def stretched(target: Placed, factors: tuple[float, float], fixed: tuple[float, 
         return target.enlarged(factors[0], target.centre if fixed is None else fixed)
     stay = np.array(target.centre if fixed is None else fixed)
     return target.mapped(np.diag(factors), stay * (1.0 - np.array(factors)))
-
-
-def _thinned(polygon: Polygon, tolerance: float) -> FloatArray:
-    """Vertices (L, 2) of a simplified polygon; none when nothing is left of it."""
-    return shapely.get_coordinates(polygon.simplify(tolerance))[:-1]
 
 
 def _checked(strength: float, code: str) -> float:

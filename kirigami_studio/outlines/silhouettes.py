@@ -27,16 +27,21 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in resource("silhouettes").glob("*.json")))
 
 
+def solid_names() -> tuple[str, ...]:
+    """Names of those without holes."""
+    return tuple(name for name in names() if not _stored(name)[1].holes)
+
+
 @cache
 def _stored(name: str) -> tuple[LibraryEntry, Outline]:
     path = resource("silhouettes", f"{name}.json")
     try:
         stored = json.loads(path.read_text(encoding="utf-8"))
         entry = LibraryEntry(stored["name"], stored["title"], stored["about"])
-        points = stored["points"]
+        points, holes = stored["points"], stored.get("holes", ())
     except (OSError, ValueError, KeyError, TypeError):
         raise TargetError("silhouette.damaged", path=path) from None
-    return entry, Outline.from_points(points, name=entry.name)
+    return entry, Outline.from_points(points, name=entry.name, holes=holes)
 
 
 def entry(name: str) -> LibraryEntry:

@@ -19,6 +19,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.symmetry import TOLERANCE, symmetry_of, turned
+from kirigami_studio.outlines.turning import sides_needed, turn_back
 
 #: Vertices of circles and ellipses: their areas are within 0.002 % of the true ones.
 ROUND_VERTICES = 720
@@ -41,7 +42,10 @@ UPRIGHT = 1e-3
 #: Weight of a start unless another is asked for.
 USUAL_WEIGHT = 1.0
 #: What :func:`start_shape` reads beside files and library names.
-KINDS = ("rectangle", "square", "circle", "ellipse", "triangle", "hexagon")
+KINDS = ("auto", "rectangle", "square", "circle", "ellipse", "triangle", "hexagon", "gable", "notch")
+#: Rectangles with a fifth corner on the axis, and with a notch there.
+GABLE = ((-1.0, -1.0), (1.0, -1.0), (1.0, 0.7), (0.0, 1.3), (-1.0, 0.7))
+NOTCH = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.35, 1.0), (0.0, 0.3), (-0.35, 1.0), (-1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +103,13 @@ class StartShape:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is the paper's: a rectangle of square cells."""
+        """Whether it is the paper's: a rectangle of square cells; also one that a run has not chosen yet."""
         return self.outline is None and self.aspect is None
+
+    @property
+    def is_auto(self) -> bool:
+        """Whether runs choose it."""
+        return self.is_plain and self.name == AUTO
 
     def proportion(self, rows: int, columns: int) -> float:
         """Logarithm of height over width of a sheet of so many voids; of other shapes than rectangles by moments."""
@@ -109,12 +118,30 @@ class StartShape:
         return math.log((rows + 1) / (columns + 1)) if self.aspect is None else -math.log(self.aspect)
 
     @property
+    def sides(self) -> float:
+        """Number of its straight sides; endless where it is round."""
+        if self.outline is None:
+            return 4
+        count = len(self.outline.points)
+        return count if count <= MOST_SIDES else math.inf
+
+    @property
     def digest(self) -> str:
         """The start of the SHA-256 of its points, or nothing for a rectangle: names of files say little."""
         return "" if self.outline is None else hashlib.sha256(self.outline.points.tobytes()).hexdigest()[:16]
 
 
 RECTANGLE = StartShape()
+#: Name of a start that runs choose.
+AUTO = "auto"
+
+#: Closed sheets show a notch badly that turns back by this (radians), and not at all from half a turn on.
+TURNS_BACK = math.radians(170.0)
+
+
+def no_closed_sheet_shows(target: Outline, start: StartShape = RECTANGLE) -> bool:
+    """Whether a target turns back too far for any closed sheet, or has more arms than a start has sides."""
+    return turn_back(target).angle >= TURNS_BACK or sides_needed(target) > start.sides
 
 
 def start_shape(text: str) -> StartShape:
@@ -123,8 +150,9 @@ def start_shape(text: str) -> StartShape:
     Parameters
     ----------
     text : str
-        ``rectangle`` (of square cells), ``rectangle:W:H``, ``square``, ``circle``, ``ellipse`` (3:2), ``ellipse:W:H``,
-        ``triangle``, ``hexagon``, ``polygon:N``, a file that holds a shape, or the name of a library silhouette.
+        ``auto`` (runs choose it), ``rectangle`` (of square cells), ``rectangle:W:H``, ``square``, ``circle``,
+        ``ellipse`` (3:2), ``ellipse:W:H``, ``triangle``, ``hexagon``, ``polygon:N``, ``gable``, ``notch``, a file that
+        holds a shape, or the name of a library silhouette.
 
     Raises
     ------
@@ -139,6 +167,12 @@ def start_shape(text: str) -> StartShape:
     match (kind, len(numbers)):
         case ("rectangle", 0):
             return RECTANGLE
+        case ("auto", 0):
+            return StartShape(AUTO)
+        case ("gable", 0):
+            return StartShape("gable", Outline.from_points(np.array(GABLE), "gable"))
+        case ("notch", 0):
+            return StartShape("notch", Outline.from_points(np.array(NOTCH), "notch"))
         case ("square", 0):
             return StartShape("square", None, 1.0)
         case ("rectangle", 2):
@@ -169,6 +203,7 @@ def outline_start(outline: Outline) -> StartShape:
     SheetError
         It is too long, or too much of its hull is missing; the sentence says where the deepest hollow is.
     """
+    outline = outline.filled
     length = math.exp(Proportions.of(outline).longest)
     if length > LONGEST * (1.0 + ROUNDING):
         raise SheetError("start.too_long", name=outline.name, length=length, longest=LONGEST)
@@ -199,7 +234,7 @@ def check_hollows(outline: Outline) -> None:
 
 def hollows(outline: Outline) -> tuple[FloatArray, ...]:
     """What is missing to a convex shape, (P, 2) each; nothing where so little is missing that it will be filled."""
-    shape = outline.polygon
+    shape = outline.filled.polygon
     hull = shape.convex_hull
     if hull.area <= 1.0 + FILLED:
         return ()

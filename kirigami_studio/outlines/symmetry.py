@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 import shapely
@@ -93,15 +93,15 @@ def turned(points: FloatArray, angle: float) -> FloatArray:
 @lru_cache(maxsize=64)
 def symmetry_of(target: Outline) -> TargetSymmetry:
     """Measure a target's symmetry; the last few are remembered."""
-    series = _ring_series(target.points)
-    shared = np.fft.fft(_padded(np.einsum("j,jk->k", series.weight, series.terms**2).conj())).real / (2.0 * math.pi)
-    overlap = shared / (2.0 - shared)
     polygon = target.polygon
+    series = _ring_series(target.rings)
+    shared = np.fft.fft(_padded(np.einsum("j,jk->k", series.weight, series.terms**2).conj())).real / (2.0 * math.pi)
+    overlap = shared / (2.0 * polygon.area - shared)
     if overlap.min() >= TOLERANCE:
         angles = np.array([0.5 * math.pi, 0.0])
     else:
         angles = _maxima(np.einsum("j,jk->k", series.weight, series.terms**2), overlap)
-    axes = [MirrorAxis(float(angle), 0.0, _iou(polygon, mirror_image(target.points, float(angle)))) for angle in angles]
+    axes = [MirrorAxis(float(angle), 0.0, _iou(polygon, partial(mirror_image, angle=float(angle)))) for angle in angles]
     axes.sort(key=_best_first)
     axes = [_moved(target, axis) for axis in axes[:MOVED_AXES]] + axes[MOVED_AXES:]
     axes.sort(key=_best_first)
@@ -114,7 +114,7 @@ def symmetry_of(target: Outline) -> TargetSymmetry:
 
 def turn_overlap(target: Outline, angle: float) -> float:
     """IoU of a target and itself, turned about its centroid by an angle in radians."""
-    return _iou(target.polygon, turned(target.points, angle))
+    return _iou(target.polygon, partial(turned, angle=angle))
 
 
 def different_axes(target: Outline, axes: Sequence[MirrorAxis], least: float = TOLERANCE) -> tuple[MirrorAxis, ...]:
@@ -139,8 +139,9 @@ class _RingSeries:
     weight: FloatArray
 
 
-def _ring_series(points: FloatArray) -> _RingSeries:
-    start, step = points, np.roll(points, -1, axis=0) - points
+def _ring_series(outer_and_holes: Sequence[FloatArray]) -> _RingSeries:
+    points = np.concatenate(outer_and_holes)
+    start, step = points, np.concatenate([np.roll(one, -1, axis=0) - one for one in outer_and_holes])
     width = float(np.hypot(*points.T).max()) / RINGS
     radius = width * (np.arange(RINGS) + 0.5)
     # Where |start + t step| = radius: the earlier crossing of an edge leaves the shape, seen along the ring.
@@ -149,7 +150,8 @@ def _ring_series(points: FloatArray) -> _RingSeries:
     c = np.einsum("ij,ij->i", start, start)[None] - np.square(radius)[:, None]
     room = np.square(b)[None] - a[None] * c
     root = np.sqrt(np.maximum(room, 0.0))
-    inside = shapely.contains_xy(shapely.Polygon(points), radius, np.zeros(RINGS))
+    shape = shapely.Polygon(outer_and_holes[0], outer_and_holes[1:])
+    inside = shapely.contains_xy(shape, radius, np.zeros(RINGS))
     ring, angle, sign = [], [], []
     for entering in (-1.0, 1.0):
         place = (-b[None] + entering * root) / a[None]
@@ -196,13 +198,16 @@ def _moved(target: Outline, axis: MirrorAxis) -> MirrorAxis:
     """The axis shifted and turned a little to where the overlap is largest."""
     if not LEAST_MEANT - 0.1 <= axis.overlap < TOLERANCE:
         return axis
-    thin = shapely.get_coordinates(target.polygon.simplify(COARSENESS))[:-1]
-    shape = shapely.Polygon(thin)
+    shape = target.polygon.simplify(COARSENESS)
+
+    def shared(polygon: shapely.Polygon, angle: float, offset: float) -> float:
+        return _iou(polygon, partial(mirror_image, angle=angle, offset=offset))
+
     angle, offset = axis.angle, 0.0
-    offset = _highest(lambda at: _iou(shape, mirror_image(thin, angle, at)), -AXIS_SHIFT, AXIS_SHIFT)
-    angle = _highest(lambda at: _iou(shape, mirror_image(thin, at, offset)), angle - AXIS_TURN, angle + AXIS_TURN)
-    offset = _highest(lambda at: _iou(shape, mirror_image(thin, angle, at)), offset - 0.01, offset + 0.01)
-    overlap = _iou(target.polygon, mirror_image(target.points, angle, offset))
+    offset = _highest(lambda at: shared(shape, angle, at), -AXIS_SHIFT, AXIS_SHIFT)
+    angle = _highest(lambda at: shared(shape, at, offset), angle - AXIS_TURN, angle + AXIS_TURN)
+    offset = _highest(lambda at: shared(shape, angle, at), offset - 0.01, offset + 0.01)
+    overlap = shared(target.polygon, angle, offset)
     if overlap <= axis.overlap:
         return axis
     return MirrorAxis(angle % math.pi, offset if angle % math.tau < math.pi else -offset, overlap)
@@ -225,9 +230,10 @@ def _highest(value: Callable[[float], float], low: float, high: float) -> float:
     return 0.5 * (low + high)
 
 
-def _iou(polygon: shapely.Polygon, image: FloatArray) -> float:
-    """IoU of a polygon and the ring of one of the same area."""
-    common = polygon.intersection(shapely.Polygon(image)).area
+def _iou(polygon: shapely.Polygon, moved: Callable[[FloatArray], FloatArray]) -> float:
+    """IoU of a polygon and its image, whose points (L, 2) are moved without a change of its area."""
+    outer, *holes = (moved(shapely.get_coordinates(ring)) for ring in (polygon.exterior, *polygon.interiors))
+    common = polygon.intersection(shapely.Polygon(outer, holes)).area
     return float(common / (2.0 * polygon.area - common))
 
 
@@ -290,13 +296,14 @@ def _mean_of_images(target: Outline, middle: FloatArray, angle: float, images: S
     if not rings:
         raise TargetError("symmetry.nothing_in_common")
     largest = max(rings, key=lambda ring: ring.area)
-    traced = turned(shapely.get_coordinates(largest)[:-1], angle) + middle
-    return Outline.from_points(traced, target.name, target.notes, target.unit)
+    within = [ring for ring in rings if ring is not largest and largest.contains_properly(ring)] if target.holes else []
+    traced, *holes = (turned(shapely.get_coordinates(ring)[:-1], angle) + middle for ring in (largest, *within))
+    return Outline.from_points(traced, target.name, target.notes, target.unit, holes)
 
 
 def _signed_distance(target: Outline, points: FloatArray) -> FloatArray:
     """Distance of points (N, 2) to the outline, positive inside: (N,)."""
-    ring = shapely.LinearRing(target.points)
+    ring = target.polygon.boundary
     shapely.prepare(ring)
     distance = shapely.distance(ring, shapely.points(points))
     inside = shapely.contains_xy(target.polygon, points[:, 0], points[:, 1])

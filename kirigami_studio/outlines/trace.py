@@ -1,4 +1,4 @@
-"""An ink field -> one ring: largest piece, holes filled, contour at level 0 with sub-pixel precision."""
+"""An ink field -> one polygon: largest piece with its holes, contours at level 0 with sub-pixel precision."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from skimage import measure
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import TargetError
-from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.foundation.words import tr_n
 
 #: scikit-image carries no types; the annotation states what is used of it.
 find_contours: Callable[[FloatArray, float], list[FloatArray]] = measure.find_contours
@@ -31,8 +31,8 @@ LEAST_PIXELS = 16
 MOST_SPECKS = 20
 
 
-def trace(ink: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:
-    """Return the boundary of the largest piece.
+def trace(ink: FloatArray) -> tuple[Polygon, tuple[str, ...]]:
+    """Return the largest piece with its holes.
 
     Parameters
     ----------
@@ -42,10 +42,11 @@ def trace(ink: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:
 
     Returns
     -------
-    ring : (L, 2) float, pixels, y up
-        One pixel of ink is a square of side 1; the bottom left pixel is centred at (0, 0).
+    piece : shapely.Polygon, pixels, y up
+        One pixel of ink is a square of side 1; the bottom left pixel is centred at (0, 0).  A hole within a pixel of
+        the rim is filled.
     notes : tuple of str
-        What was left out and filled.
+        What was left out.
 
     Raises
     ------
@@ -54,19 +55,29 @@ def trace(ink: FloatArray) -> tuple[FloatArray, tuple[str, ...]]:
     """
     piece, notes = _main_piece(ink > 0)
     solid = ndimage.binary_fill_holes(piece)
-    if (filled := 1 - np.sum(piece) / np.sum(solid)) > 0:
-        notes = (*notes, tr("Holes were filled ({percent:.2g} % of the area).", percent=100 * filled))
     highest = float(np.max(np.abs(ink)))
     field = np.where(solid & ~piece, highest, ink)
     field[~solid & (ink > 0)] = -highest
-    margin = 4  # Wider than the blur: shapes that touch the border close half a pixel outside.
-    field = ndimage.gaussian_filter(np.pad(field, margin, constant_values=-highest), BLUR, mode="nearest")
-    contours = [ring[:-1] for ring in find_contours(field, 0.0) if len(ring) > 4]
+    contours = _contours(field)
     if not contours:
         raise TargetError("trace.thinner_than_a_pixel")
-    ring = max(contours, key=lambda ring: Polygon(ring).area) - margin
-    points = np.column_stack([ring[:, 1], ink.shape[0] - 1 - ring[:, 0]])
-    return _simplified(points), notes
+    outer = max(contours, key=lambda ring: Polygon(ring).area)
+    rim, holes = Polygon(outer), []
+    if np.any(solid & ~piece):
+        # What lies in a hole belongs to it.
+        missing = np.where(solid, np.where(piece, -np.abs(ink), np.abs(ink)), -highest)
+        holes = [hole for hole in _contours(missing) if Polygon(hole).area >= LEAST_PIXELS]
+        holes = [hole for hole in holes if Polygon(hole).is_valid and rim.contains_properly(Polygon(hole))]
+    return Polygon(_simplified(outer), [_simplified(hole) for hole in holes]), notes
+
+
+def _contours(field: FloatArray) -> list[FloatArray]:
+    """The closed contours (L, 2) of a field (H, W) at level 0, pixels, y up."""
+    margin = 4  # Wider than the blur: shapes that touch the border close half a pixel outside.
+    outside = -float(np.max(np.abs(field)))
+    calm = ndimage.gaussian_filter(np.pad(field, margin, constant_values=outside), BLUR, mode="nearest")
+    rings = [ring[:-1] - margin for ring in find_contours(calm, 0.0) if len(ring) > 4]
+    return [np.column_stack([ring[:, 1], field.shape[0] - 1 - ring[:, 0]]) for ring in rings]
 
 
 def _main_piece(mask: BoolArray) -> tuple[BoolArray, tuple[str, ...]]:

@@ -23,6 +23,8 @@ from kirigami_studio.outlines.outline import Outline
 LIMIT = math.pi
 #: Details below this (unit-area lengths) are left out, and so are edges below the second: they hardly cost match.
 COARSENESS, SHORTEST = 0.01, 0.03
+#: Edges that turn by so much are flanks of an arm; flanks that lean a little more are hardly parallel for the eye.
+PARALLEL = math.radians(175.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,7 +39,7 @@ class TurnBack:
 
 def turn_back(outline: Outline) -> TurnBack:
     """The largest turn to the right between two edges of an outline, the later one counter-clockwise from the first."""
-    points = shapely.get_coordinates(outline.polygon.simplify(COARSENESS))[:-1]
+    points = shapely.get_coordinates(shapely.Polygon(outline.points).simplify(COARSENESS))[:-1]
     edges = np.roll(points, -1, axis=0) - points
     turns = np.arctan2(
         edges[:, 0] * np.roll(edges[:, 1], -1) - edges[:, 1] * np.roll(edges[:, 0], -1),
@@ -56,3 +58,28 @@ def turn_back(outline: Outline) -> TurnBack:
     angle, start, end = best
     places = np.arange(start, end + 2) if angle > 0.0 else np.arange(0)
     return TurnBack(angle, points[places % count])
+
+
+def sides_needed(outline: Outline) -> int:
+    """Fewest sides of a flat sheet whose edge cuts become the sides of an outline, by their directions alone.
+
+    What one side of the sheet becomes has directions within less than a half turn, so round the end of an arm with
+    parallel flanks another side begins: a star of many arms needs as many sides.
+    """
+    points = shapely.get_coordinates(outline.polygon.simplify(COARSENESS))[:-1]
+    edges = np.roll(points, -1, axis=0) - points
+    kept = edges[np.hypot(*edges.T) >= SHORTEST]
+    after = np.roll(kept, -1, axis=0)
+    turns = np.arctan2(kept[:, 0] * after[:, 1] - kept[:, 1] * after[:, 0], np.einsum("ij,ij->i", kept, after))
+    return min((_sides_from(np.roll(turns, -first)) for first in range(len(turns))), default=0)
+
+
+def _sides_from(turns: FloatArray) -> int:
+    """How many sides are needed when the first one begins with the first edge; turns (E,) follow the edges."""
+    sides, low, high, direction = 1, 0.0, 0.0, 0.0
+    for turn in turns[:-1]:
+        direction += turn
+        low, high = min(low, direction), max(high, direction)
+        if high - low >= PARALLEL:
+            sides, low, high = sides + 1, direction, direction
+    return sides

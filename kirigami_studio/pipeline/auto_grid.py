@@ -41,7 +41,7 @@ COARSEST, FINEST = 6, 16
 #: The same of pinned sheets, whose pieces somebody has to put together.
 COARSEST_PINNED, FINEST_PINNED = 3, 10
 #: Distances between pins (unit cells) that sheets have room for.
-MOST_GAP = 0.42
+MOST_GAP = 0.375
 #: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
 FEWEST_VOIDS, FEWEST_PINNED = 99, 49
 #: The coarsest grid with at least this predicted match is taken.
@@ -79,6 +79,10 @@ MOST_START_ERROR_PINNED = 0.025
 SYMMETRIC_GRIDS = ((11, 11), (12, 12), (9, 9), (13, 11), (9, 11))
 #: Details below this (unit-area lengths) do not count as bends.
 COARSENESS = 0.01
+#: A hole is as wide as so many panels at least, and a wall beside it as this: where they are two panels wide, 98 % of
+#: a round hole opens, at 1.5 and 1.2 panels three quarters, as the hinges within stay.  Where no grid is as fine, one
+#: that has this share of the panels of the finest will do.
+HOLE_PANELS, WALL_PANELS, FINEST_SHARE = 1.7, 1.6, 0.9
 #: Parts narrower than twice this (unit-area lengths) are limbs.
 LIMB = 0.2
 #: Numbers of panels for which it is measured what is narrower than two of them; in between that is interpolated.
@@ -135,7 +139,7 @@ class ShapeFigures:
     @classmethod
     def of(cls, target: Outline) -> ShapeFigures:
         """Measure a target."""
-        points = shapely.get_coordinates(target.polygon.simplify(COARSENESS))[:-1]
+        points = shapely.get_coordinates(shapely.Polygon(target.points).simplify(COARSENESS))[:-1]
         after = np.roll(points, -1, axis=0) - points
         before = np.roll(after, 1, axis=0)
         turns = np.arctan2(
@@ -216,7 +220,8 @@ def choose_grid(
     UsageError
         The start, or a pinned sheet, cannot have the symmetry that is asked for.
     """
-    pinned = least_gap_mm > 0.0
+    pinned, holes_need = least_gap_mm > 0.0, panels_for_holes(target)
+    target = target.filled
     poses = _poses(target, symmetry, start, pinned=pinned)
     figures = ShapeFigures.of(target)
     smallest = SMALLEST_SHARE * width_mm / least_feature_mm if least_feature_mm > 0.0 else math.inf
@@ -230,7 +235,9 @@ def choose_grid(
     found = [one for one in found if one.start_error <= most_error] or [min(found, key=lambda one: one.start_error)]
     cuttable = [one for one in found if one.width <= smallest] or [min(found, key=lambda one: one.width)]
     fewest = FEWEST_PINNED if pinned else FEWEST_VOIDS
-    best = _coarsest([one for one in cuttable if one.grid[0] * one.grid[1] >= fewest] or cuttable)
+    enough = [one for one in cuttable if one.grid[0] * one.grid[1] >= fewest] or cuttable
+    without_holes, enough = _coarsest(enough), _fine_enough(enough, holes_need)
+    best = _coarsest(enough)
     finer = [one for one in found if one.panels > best.panels and one.match > best.match]
     held_back = best.match < GOAL and len(cuttable) < len(found) and bool(finer)
     # Of a sketch, a symmetric sheet shows the shape halfway to its image.
@@ -245,6 +252,8 @@ def choose_grid(
         code = "grid.best_expected"
     else:
         code = COARSEST_CODES[best.pose.symmetry if best.pose else None]
+    if best is not without_holes and not held_back:
+        code = "grid.finer_for_holes"
     kept = shared_symmetries(target, best.grid, symmetry, start, pinned=pinned)
     kept.sort(key=lambda pose: pose != best.pose)
     return GridChoice(best.grid, tuple(kept), match, code, tuple(fields.items()))
@@ -300,9 +309,9 @@ def _key(request: Request) -> Hashable:
 
 
 def _tried(request: Request, trials: Trials) -> GridChoice:
-    target, start, symmetry = request.target, request.start, request.symmetry
+    target, start, symmetry = request.silhouette, request.start, request.symmetry
     choice = predicted_for(request)
-    hard = choice.code == "grid.best_expected" and choice.predicted_match < TRIED_BELOW
+    hard = choice.code in ("grid.best_expected", "grid.finer_for_holes") and choice.predicted_match < TRIED_BELOW
     if not hard or request.pinned or not choice.poses or choice.poses[0].angle is None:
         return choice
     poses = _poses(target, symmetry, start)
@@ -314,6 +323,7 @@ def _tried(request: Request, trials: Trials) -> GridChoice:
         for one in _candidates(target, figures, poses, FINER_LIMIT, start, TRIED_ROOM)
         if 1.0 - one.match <= most_missing and one.width <= smallest
     ]
+    near = _fine_enough(near, panels_for_holes(request.target))
     picked: list[_Candidate] = []
     for one in sorted(near, key=lambda one: -one.match):
         apart = all(abs(one.proportion - other.proportion) > TRIED_APART for other in picked)
@@ -342,7 +352,7 @@ def _worth(request: Request, grids: Sequence[_Candidate], trials: Trials) -> dic
     """What short symmetric fits on each grid reach: the best exact IoU, less the price of uneven panels."""
     tasks, owners = [], []
     for one in grids:
-        for angle, kept in first_angles(request.target, one.grid, 1, request.symmetry, request.start)[:TRIED_POSES]:
+        for angle, kept in first_angles(request.silhouette, one.grid, 1, request.symmetry, request.start)[:TRIED_POSES]:
             tasks.append(TrialTask(one.grid, angle, kept, TRIAL))
             owners.append(one)
     worth: dict[_Candidate, float] = {}
@@ -397,6 +407,23 @@ class _Candidate:
     @property
     def panels(self) -> int:
         return (self.grid[0] + 1) * (self.grid[1] + 1)
+
+
+@lru_cache(maxsize=64)
+def panels_for_holes(target: Outline) -> float:
+    """Number of panels that holes and the walls beside them need."""
+    if not target.holes:
+        return 0.0
+    widths = [2.0 * float(shapely.maximum_inscribed_circle(shapely.Polygon(hole)).length) for hole in target.holes]
+    rings = np.array([shapely.LinearRing(ring) for ring in target.rings], dtype=object)
+    walls = [float(shapely.distance(ring, np.delete(rings, place)).min()) for place, ring in enumerate(rings)]
+    return max((HOLE_PANELS / min(widths)) ** 2, (WALL_PANELS / max(min(walls), 1e-6)) ** 2)
+
+
+def _fine_enough(candidates: list[_Candidate], panels: float) -> list[_Candidate]:
+    """Those with so many panels; where there are none, those with nearly as many as the finest."""
+    most = max((one.panels for one in candidates), default=0)
+    return [one for one in candidates if one.panels >= min(panels, FINEST_SHARE * most)]
 
 
 def _coarsest(candidates: list[_Candidate]) -> _Candidate:

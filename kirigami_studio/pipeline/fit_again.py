@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.pipeline.pool import Pool, shared_pool
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import Watch, answers, gains
-from kirigami_studio.pipeline.tasks import PolishTask
+from kirigami_studio.pipeline.tasks import CoverTask, PolishTask
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +33,8 @@ class FitReport:
 
 
 def worth_fitting_again(candidate: Candidate) -> bool:
-    """Whether a fit may change a design: what a hand or a trim has made stays."""
-    return candidate.origin is not Origin.EDITED and candidate.trim is None
+    """Whether a fit may change a design: what a hand has made stays, and what was trimmed by hand."""
+    return candidate.origin is Origin.COVERED or (candidate.origin is not Origin.EDITED and candidate.trim is None)
 
 
 def fit_again(
@@ -58,11 +59,13 @@ def fit_again(
         ``cancel`` returned true.
     """
     asked = replace(request, k=max(len(candidates), 1), search=0, guided=0, trim=False, near=None, nearness=0.0)
-    workers = shared_pool() if pool is None else pool
+    workers, ranking = shared_pool() if pool is None else pool, Ranking.of(asked)
     if gains(workers, asked):
         workers.start()
     watch = Watch(cancel, time.perf_counter())
-    tasks = [PolishTask(candidate, asked.polish) for candidate in candidates]
+    tasks: list[PolishTask | CoverTask] = [
+        CoverTask(one) if one.origin is Origin.COVERED else PolishTask(one, asked.polish) for one in candidates
+    ]
     done, total = 0, len(tasks)
     yield FitReport(done, total)
     with closing(answers(workers if gains(workers, asked) else None, asked, tasks, watch)) as reports:
@@ -74,6 +77,8 @@ def fit_again(
                 continue
             done += 1
             before, after = candidates[report[0]], report[1].candidate
+            if after is not None and before.origin is Origin.COVERED and ranking.key(after) > ranking.key(before):
+                after = None
             if after is not None:
                 after = replace(after, seed=before.seed, variant=before.variant, made_with=before.made_with)
             yield FitReport(done, total, None if after is None else before, after)

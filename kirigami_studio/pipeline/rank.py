@@ -6,14 +6,16 @@ The *worth* of a design is its exact IoU less a price for what eyes and cutters 
                 - what it was found to lose as cut
                 - weight * (1 - IoU at the second target's angle)
                 - s * (EVENNESS * CV of panel areas + THIN * thinness + AT_LIMIT * share of ratios at a limit
-                       - SYMMETRY if the sheet is symmetric),        s = (2 * regular) ** 2
+                       + GIVEN_UP * share of the sheet that is cut away
+                       - SYMMETRY * how far its symmetry is seen),        s = (2 * regular) ** 2
 
 ``regular`` runs from 0 (s = 0: match alone) over 0.5 (s = 1) to 1 (s = 4).  Thinness is 0 for panels whose edges and
 necks all measure :data:`SLENDER` cells or more, and 1 for a panel without any width.  All figures are those that a
 score has, so that ranking again needs no geometry.  A second target counts where designs were made for one.  Where it
 is known at which angle designs jam as cut, the share of its way that a design does not come costs :data:`JAMMING`,
-whatever ``regular`` is: the match is missed as well.  Where a run trims its best designs these come first, by their
-worth with the trimmed IoU.  Ties keep the lower total variation, then the sampling order.
+whatever ``regular`` is: the match is missed as well.  A design of which parts are cut away has the IoU of what stays,
+and its price; where a run was asked to trim its best designs these come first.  Ties keep the lower total variation,
+then the sampling order.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ from dataclasses import dataclass, field
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.pins import GAP_ROUNDING
 from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.preferences import FitPreference
 
@@ -39,6 +42,14 @@ AT_LIMIT = 0.01
 #: IoU that a symmetric sheet may lack and still comes first.  A leaf lacks 0.019, a mushroom 0.0205; above 0.024 clubs
 #: and spades would be symmetric at 0.97 instead of 0.99.
 SYMMETRY = 0.022
+#: Share of that which a turn is worth: eyes see a mirror axis at once, a turn hardly.
+TURN_SHARE = 0.5
+#: Below the second match a symmetric sheet is worth less, and from the first one down nothing: what it misses is seen
+#: before its symmetry is.  An icon was symmetric at 0.950 where 0.970 was found.
+SYMMETRY_SEEN = (0.95, 0.975)
+#: IoU that a sheet which is cut from whole is worth over one of which everything is cut away: a cover that gives up a
+#: tenth of its sheet comes first where it matches better by 1 %.
+GIVEN_UP = 0.1
 #: IoU that a sheet which comes to its angle is worth over one that stays flat: jamming at 36 of 180 degrees costs 5 %.
 JAMMING = 0.25
 
@@ -72,11 +83,13 @@ class Ranking:
     refusals: Mapping[Candidate, Note] = field(default_factory=dict, hash=False)
     #: Worth that designs which were looked at closely lose by being cut
     losses: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
+    trimmed_first: bool = False  #: Whether trimmed designs come first, whatever they are worth: they were asked for
 
     @classmethod
     def of(cls, request: Request) -> Ranking:
         """As a request asks for it."""
-        return cls(request.regular, request.width_mm, request.least_feature_mm, request.least_gap_mm)
+        sizes = request.width_mm, request.least_feature_mm, request.least_gap_mm
+        return cls(request.regular, *sizes, trimmed_first=request.trims)
 
     def wide_enough(self, candidate: Candidate) -> bool:
         """Whether all panels are as wide as the material needs them."""
@@ -111,14 +124,15 @@ class Ranking:
         return (2.0 * self.regular) ** 2
 
     def prices(self, candidate: Candidate) -> dict[str, float]:
-        """What is taken off the IoU, by the code of the reason that names it; a symmetric sheet has the price 0."""
+        """What is taken off the IoU, by the code of the reason that names it."""
         scale, figures = self.scale, candidate.score.evenness
         thinness = max(0.0, 1.0 - min(figures.least_edge, figures.least_neck) / SLENDER)
         return {
             "rank.less_even": scale * EVENNESS * figures.area_cv,
             "rank.thinner": scale * THIN * thinness,
             "rank.more_at_limit": scale * AT_LIMIT * figures.at_limit,
-            "rank.not_symmetric": scale * SYMMETRY * (candidate.symmetry is None),
+            "rank.not_symmetric": scale * SYMMETRY * (1.0 - _seen_symmetry(candidate)),
+            "rank.gives_up": scale * GIVEN_UP * candidate.given_up,
             "rank.jams": JAMMING * self.missed(candidate),
             "rank.less_as_cut": self.losses.get(candidate, 0.0),
             "rank.less_second": 0.0 if candidate.second is None else candidate.second.price,
@@ -130,7 +144,11 @@ class Ranking:
 
     def worth_as_made(self, candidate: Candidate) -> float:
         """The same with the trimmed IoU of a design that is trimmed."""
-        return _match(candidate) - sum(self.prices(candidate).values())
+        return candidate.match - sum(self.prices(candidate).values())
+
+    def made_match(self, candidate: Candidate) -> float:
+        """Exact IoU of what is made of a design: trimmed, if it is; of its pieces where they are known."""
+        return candidate.match - (self.losses.get(candidate, 0.0) if self.least_gap_mm else 0.0)
 
     def key(self, candidate: Candidate) -> Key:
         """Sorting key; smaller is better."""
@@ -138,7 +156,7 @@ class Ranking:
         return (
             not score.feasible,
             candidate in self.refusals,
-            candidate.trim is None,
+            self.trimmed_first and candidate.trim is None,
             not self.pins_apart(candidate),
             not self.wide_enough(candidate),
             -self.worth_as_made(candidate),
@@ -174,47 +192,54 @@ class Ranking:
         if not candidates:
             return []
         first = candidates[0]
-        most = max(_match(one) for one in candidates if (one.trim is None) is (first.trim is None))
+        most = max(self.made_match(one) for one in candidates if (one.trim is None) is (first.trim is None))
         return [self._why_first(first, most), *(self._why_later(one, first) for one in candidates[1:])]
 
     def _why_first(self, first: Candidate, most: float) -> Note:
-        score, even = first.score, first.score.evenness
+        even = first.score.evenness
         if not self.cuttable(first):
             return self._why_not(first)
+        if first.trim is not None and first.trim.holes:
+            return Note.of("rank.holes_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
         if first.trim is not None and first.trim.given_up:
-            return Note.of("rank.notch_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
+            shares = {"match": 100 * first.match, "percent": 100 * first.given_up}
+            return Note.of("rank.notch_cut_out", **shares, count=first.trim.given_up)
         if first.trim is not None:
             code = "rank.best_trimmed" if first.trim.iou >= most else "rank.best_balance_trimmed"
             return Note.of(code, match=100 * first.trim.iou, variation=100 * even.area_cv)
         plain, symmetric = "rank.best_balance", "rank.best_balance_symmetric"
-        if score.iou_exact >= most:
+        match = 100 * self.made_match(first)
+        if match >= 100 * most:
             plain, symmetric = "rank.best_match", "rank.best_match_symmetric"
         code = plain if first.symmetry is None else symmetric
         if first.second is not None:
             angle, second = math.degrees(first.second.target.phi), 100 * first.second.match.iou_exact
-            return Note.of("rank.best_of_both", match=100 * score.iou_exact, second=second, angle=angle)
-        return Note.of(code, match=100 * score.iou_exact, variation=100 * even.area_cv)
+            return Note.of("rank.best_of_both", match=match, second=second, angle=angle)
+        return Note.of(code, match=match, variation=100 * even.area_cv)
 
     def _why_later(self, one: Candidate, first: Candidate) -> Note:
         if not self.cuttable(one):
             return self._why_not(one)
-        if first.trim is not None and one.trim is None:
+        if self.trimmed_first and first.trim is not None and one.trim is None:
             return Note.of("rank.not_trimmed")
         own, others = self.prices(one), self.prices(first)
         behind = {code: own[code] - others[code] for code in own}
-        behind["rank.less_match"] = _match(first) - _match(one)
+        behind["rank.less_match"] = self.made_match(first) - self.made_match(one)
+        if self.least_gap_mm:
+            del behind["rank.less_as_cut"]  # it is in the match
         code = max(behind, key=behind.__getitem__)
         if behind[code] < 5e-5:
             return Note.of("rank.equal")
-        if code == "rank.less_match" and first.trim is not None:
-            return Note.of("rank.less_trimmed_match", match=100 * _match(one), first=100 * _match(first))
+        if code == "rank.less_match" and first.trim is not None and one.trim is not None:
+            return Note.of("rank.less_trimmed_match", match=100 * one.match, first=100 * first.match)
         even, best = one.score.evenness, first.score.evenness
         mine, theirs = {
-            "rank.less_match": (100 * one.score.iou_exact, 100 * first.score.iou_exact),
+            "rank.less_match": (100 * self.made_match(one), 100 * self.made_match(first)),
             "rank.less_even": (100 * even.area_cv, 100 * best.area_cv),
             "rank.thinner": (even.least_feature_mm(self.width_mm), best.least_feature_mm(self.width_mm)),
             "rank.more_at_limit": (100 * even.at_limit, 100 * best.at_limit),
             "rank.not_symmetric": (0.0, 0.0),
+            "rank.gives_up": (100 * one.given_up, 100 * first.given_up),
             "rank.jams": (math.degrees(self.jam_phi.get(one, 0.0)), math.degrees(self.jam_phi.get(first, 0.0))),
             "rank.less_as_cut": (100 * self.losses.get(one, 0.0), 100 * self.losses.get(first, 0.0)),
             "rank.less_second": (_second(one), _second(first)),
@@ -233,9 +258,13 @@ class Ranking:
         return Note.of("rank.too_thin", smallest_mm=smallest_mm, least_mm=self.least_feature_mm)
 
 
-def _match(candidate: Candidate) -> float:
-    """Exact IoU of what is made of a design: trimmed, if it is."""
-    return candidate.score.iou_exact if candidate.trim is None else candidate.trim.iou
+def _seen_symmetry(candidate: Candidate) -> float:
+    """How far the symmetry of a design is seen, from 0 to 1."""
+    if candidate.symmetry is None:
+        return 0.0
+    low, high = SYMMETRY_SEEN
+    fair = min(1.0, max(0.0, (candidate.match - low) / (high - low)))
+    return fair * (TURN_SHARE if candidate.symmetry is Symmetry.HALF_TURN else 1.0)
 
 
 def _second(candidate: Candidate) -> float:

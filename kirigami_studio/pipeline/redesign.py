@@ -171,6 +171,58 @@ def trimmed(
     return Trimmed(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
 
 
+def covered(
+    candidate: Candidate,
+    target: Outline,
+    keep: float,
+    cancel: Callable[[], bool],
+    locked: BoolArray | None = None,
+    least_panel: float = 0.0,
+    even: float = 0.0,
+) -> Trimmed:
+    """Make another design of a candidate: one that covers the target, of which parts are cut away.
+
+    Parameters
+    ----------
+    candidate, target, keep, cancel, locked, least_panel
+        As for :func:`trimmed`.
+    even : float
+        Weight of even panels.
+
+    Returns
+    -------
+    Trimmed
+        With a candidate whose score is that of the whole sheet as fitted to be cut, not of the one it began with.
+
+    Raises
+    ------
+    KirigamiError
+        The candidate's outline crosses itself.
+    """
+    with one_blas_thread():
+        sheet = candidate.sheet
+        cover = fit_cover(
+            sheet,
+            target,
+            candidate.score.phi,
+            COVER_STEPS,
+            candidate.score.transform,
+            keep,
+            cancel,
+            locked,
+            free_rim=not sheet.has_even_rim,
+            symmetry=None if locked is not None and locked.any() else kept_symmetry(sheet),
+            even=even,
+            least_panel=least_panel,
+            notched=True,
+        )
+        deployment = deploy(cover.trim.sheet)
+        score = evaluate(deployment, target, candidate.score.phi)
+        second = matched_again(deployment, candidate.second)
+    made = replace(candidate, sheet=cover.trim.sheet, score=score, polished=True, sampled_sheet=None, second=second)
+    return Trimmed(replace(made, trim=cover.trim, origin=Origin.COVERED), cover.fit.evaluations + 2)
+
+
 def refitted(
     candidate: Candidate,
     target: Outline,
@@ -225,10 +277,15 @@ def refitted(
     score, preference = candidate.score, PREFERENCES[prefer]
     least = max(least_in_cells(size, width_mm, score.evenness.width) for size in (least_feature_mm, room_mm))
     gap = gap_in_cells(least_gap_mm, width_mm, score.evenness.width)
+    ranking = Ranking(regular, width_mm, least_feature_mm, least_gap_mm)
+    if candidate.origin is Origin.COVERED:
+        cover = covered(candidate, target, keep(), cancel, table, least, even_weight(regular)).candidate
+        _stop_if(cancel)
+        return Refit(cover, ranking.worth_as_made(cover) > ranking.worth_as_made(candidate))
     with one_blas_thread():
         fit = polish(
             start,
-            target,
+            target.filled,
             score.phi,
             REFIT_STEPS,
             preference,
@@ -250,7 +307,7 @@ def refitted(
     fitted = replace(
         candidate, sheet=fit.sheet, score=found, polished=True, sampled_sheet=first, trim=None, second=second
     )
-    better = Ranking(regular, width_mm, least_feature_mm, least_gap_mm).improves(fitted, candidate, prefer)
+    better = ranking.improves(fitted, replace(candidate, trim=None), prefer)
     if candidate.trim is None:
         return Refit(fitted, better)
     try:

@@ -14,7 +14,9 @@ from kirigami_studio.foundation.settings import Setting, check
 from kirigami_studio.lattice.ratio_field import check_grid
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import AUTO as AUTO_START
 from kirigami_studio.outlines.starts import USUAL_WEIGHT as USUAL_START_WEIGHT
+from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.polish.continuation import FitOptions
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.flat_sheet import first_sheet, width_in_cells
@@ -48,6 +50,8 @@ class Request(DesignChoices):
     )
     #: unit cells, 0.02..0.4; depth of the material that trimming leaves at every hinge
     keep: float = field(default=KEEP, kw_only=True)
+    #: Whether designs that cover the target may be made where no closed sheet shows it, see :attr:`may_cover`
+    covers: bool = field(default=True, kw_only=True)
     #: > 0, optional; wall time after which the best so far are returned; the first batch is always scored
     budget_seconds: float | None = field(
         default=None,
@@ -91,6 +95,7 @@ class Request(DesignChoices):
         default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_gap_out_of_range").metadata
     )
     grid_chosen: bool = field(default=False, kw_only=True)  #: Whether the run chose the grid
+    start_chosen: bool = field(default=False, kw_only=True)  #: Whether the run chose the start
     #: 0..64; designs that are fitted from the uniform sheet instead of sampled, in several poses: at most a quarter of
     #: all, and none without ``polish``, near another design, or on a budget.  By default two ways from a few poses.
     guided: int = field(default=8, kw_only=True, metadata=Setting(least=0, most=64).metadata)
@@ -126,7 +131,10 @@ class Request(DesignChoices):
         UsageError
             Its grid is left to the run, which has not chosen it yet.
         """
-        return DesignSettings(self.chosen_grid, self.grid_chosen, **choices_of(self))
+        choices = choices_of(self)
+        if self.start_chosen:
+            choices["start"] = StartShape(AUTO_START, weight=self.start.weight)
+        return DesignSettings(self.chosen_grid, self.grid_chosen, **choices)
 
     @property
     def chosen_grid(self) -> tuple[int, int]:
@@ -148,6 +156,15 @@ class Request(DesignChoices):
         return min(self.guided, self.k // 4) if possible else 0
 
     @property
+    def may_cover(self) -> bool:
+        """Whether its run makes designs that cover the target, where that shows more of it than closed sheets do.
+
+        Like fits from the uniform sheet they do not depend on the seed, and are left out where these are.  A second
+        target is for whole sheets, and pieces on pins have notches of their own.
+        """
+        return self.covers and self.fitted_starts > 0 and self.second is None and not self.pinned
+
+    @property
     def even(self) -> float:
         """Weight of even panels in fits, see :func:`kirigami_studio.polish.even_panels.even_weight`."""
         return even_weight(self.regular)
@@ -167,6 +184,16 @@ class Request(DesignChoices):
         These sheets cover the target, notches and all, and have no room to give away.
         """
         return max(self.least_panel, self._in_cells(self.least_feature_mm))
+
+    @property
+    def silhouette(self) -> Outline:
+        """The target with its holes filled, for the fits of whole sheets."""
+        return self.target.filled
+
+    @property
+    def trims(self) -> bool:
+        """Whether its best designs are trimmed: where asked for, and for a target with holes."""
+        return self.trim or bool(self.target.holes)
 
     @property
     def pinned(self) -> bool:
@@ -219,6 +246,10 @@ class Request(DesignChoices):
         """The same request on the grid that was chosen for it; a grid that it has already stays."""
         return replace(self, grid=grid, grid_chosen=True) if self.grid is None else self
 
+    def with_start(self, start: StartShape) -> Request:
+        """The same request with the start that was chosen for it; one that it has already stays."""
+        return replace(self, start=start, start_chosen=True) if self.start.is_auto else self
+
 
 def as_in_paper(request: Request) -> Request:
     """The same request in the paper's setting: an even rim, no symmetry asked for, ranked by match alone."""
@@ -259,11 +290,13 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
         }
     if request.grid_chosen:
         known["grid_choice"] = "auto"
+    if request.start_chosen:
+        known["start_choice"] = "auto"
     if request.kept_size:
         known["least_panel"] = f"{request.kept_size:g}"
     if request.least_gap:
         known["least_gap"] = f"{request.least_gap:g}"
-    if request.trim:
+    if request.trims:
         known["trim_keep"] = f"{request.keep:g}"
     if request.search:
         known["search"] = str(request.search)

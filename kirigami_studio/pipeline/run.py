@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
-from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled, SheetError
 from kirigami_studio.foundation.steps import never
@@ -20,7 +20,9 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.auto_grid import GridChoice, chosen_for
+from kirigami_studio.outlines.starts import RECTANGLE, no_closed_sheet_shows
+from kirigami_studio.pipeline.auto_grid import GridChoice, Trials, chosen_for
+from kirigami_studio.pipeline.auto_start import StartChoice, chosen_start
 from kirigami_studio.pipeline.events import (
     CandidateFound,
     CandidateImproved,
@@ -34,6 +36,7 @@ from kirigami_studio.pipeline.pool import Pool, shared_pool
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import (
+    CoverTask,
     GuidedTask,
     PolishTask,
     SearchTask,
@@ -46,7 +49,6 @@ from kirigami_studio.pipeline.tasks import (
 )
 from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.polish.continuation import Way, first_angles
-from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
 from kirigami_studio.polish.unfolding import unfolded
 from kirigami_studio.settings.design import USUAL_GRID, RimRule
@@ -76,6 +78,11 @@ FINISHED = 3
 #: Designs that are trimmed: the best that differ.
 TRIMMED = 3
 
+#: Designs that cover the target are made of the best that differ.
+COVERS = 2
+#: They are made in any case where no closed design of a run that was fitted to its end matches better than this.
+COVERED_BELOW = 0.97
+
 #: Seconds between two signs of life while fits are under way.
 HEARTBEAT = 0.25
 
@@ -99,12 +106,12 @@ GRACE = 1.0
 
 
 def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Event]:
-    """Sample, score, polish, fit from the uniform sheet, search if asked for, finish the best, trim if asked for, rank.
+    """Sample, score, polish, fit from the uniform sheet, search if asked for, finish, cover, trim if asked for, rank.
 
     The result does not depend on who polishes, on the number of workers, or on the order in which they end; only a
     budget makes it depend on the clock.  All samples are returned: a duplicate of a better sample is kept as it was
     sampled.  Designs fitted from the uniform sheet follow them, ``k`` in all, and what a search finds is added as
-    number ``k``.
+    number ``k``.  Where closed sheets show the target badly, designs that cover it follow (:func:`needs_cover`).
 
     Parameters
     ----------
@@ -145,22 +152,24 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
         yield from work.search()
     if request.polish >= 2 * FIRST_ROUND:
         yield from work.finish()
-    if request.trim:
+    yield from work.cover()
+    if request.trims:
         yield from work.trim()
-        yield from work.cover()
     candidates = work.ranking.ranked(work.found)
     yield Finished(Result(request, candidates, work.evaluations, watch.seconds, work.cut_short))
 
 
 def with_grid(request: Request, pool: Pool | None = None) -> Request:
-    """The request on the grid that the run takes, where that was left to it: that of the design that samples are near,
-    else the one that suits the target, see :func:`grid_choice`.
+    """The request on the start and grid that the run takes, where these were left to it: those of the design that
+    samples are near, else those that suit the target, see :func:`start_choice` and :func:`grid_choice`.
 
     Raises
     ------
     TargetError
         A symmetry is asked for that the target does not have.
     """
+    if request.start.is_auto:
+        request = request.with_start(RECTANGLE if request.near is not None else start_choice(request, pool).start)
     if request.grid is not None:
         return request
     return request.resolved(grid_choice(request, pool).grid if request.near is None else request.near.grid)
@@ -174,6 +183,16 @@ def grid_choice(request: Request, pool: Pool | None = None) -> GridChoice:
     TargetError
         A symmetry is asked for that the target does not have.
     """
+    return chosen_for(request, _trials_in(pool))
+
+
+def start_choice(request: Request, pool: Pool | None = None) -> StartChoice:
+    """The start for a request that leaves it open, and the reason; see :func:`grid_choice`."""
+    return chosen_start(request, _trials_in(pool))
+
+
+def _trials_in(pool: Pool | None) -> Trials:
+    """Short fits, done by workers that are ready, else here."""
     workers = pool or shared_pool()
     ready = workers if workers.usable and workers.ready else None
 
@@ -181,7 +200,7 @@ def grid_choice(request: Request, pool: Pool | None = None) -> GridChoice:
         made = dict(filter(None, answers(ready, asked, tasks, Watch(never, time.perf_counter()))))
         return [found for place in range(len(tasks)) if (found := made[place].candidate) is not None]
 
-    return chosen_for(request, trials)
+    return trials
 
 
 def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Result:
@@ -206,8 +225,8 @@ def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
     grid, seed, steps, phi = request.chosen_grid, request.seed, request.steps, request.phi
     count = request.k - len(fits_from_uniform(request))
     if request.near is not None:
-        near = Near(request.near.field, rotation_of_target(request.near, request.target, phi), request.nearness)
-        fields = sample_fields(model, request.target, grid, count, seed, steps, phi, near=near)
+        near = Near(request.near.field, rotation_of_target(request.near, request.silhouette, phi), request.nearness)
+        fields = sample_fields(model, request.silhouette, grid, count, seed, steps, phi, near=near)
         return tuple(on_sheet(request, field) for field in fields)
     # The model knows no other start than the rectangle, and where mouths of that are.
     draw = (
@@ -220,7 +239,7 @@ def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
         target = fit_target(request, pose.symmetry)
         designs += draw(model, target, grid, share, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
     if len(designs) < count:
-        designs += draw(model, request.target, grid, count - len(designs), seed, steps, phi)
+        designs += draw(model, request.silhouette, grid, count - len(designs), seed, steps, phi)
     return tuple(on_sheet(request, design) for design in designs)
 
 
@@ -231,12 +250,12 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
     if not request.fitted_starts:
         return []
     grid, hands = request.chosen_grid, request.fit_options.hands
-    angles = first_angles(request.target, grid, 1, request.symmetry, request.start, pinned=request.pinned)
+    angles = first_angles(request.silhouette, grid, 1, request.symmetry, request.start, pinned=request.pinned)
     if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         angles = [one for one in angles if one[1] is not None] or angles
     ways: dict[Symmetry | None, list[tuple[float, Symmetry | None, Way, int]]] = {}
     for symmetry in dict.fromkeys(symmetry for _, symmetry in angles):
-        suited = Way.suited_to(request.target, symmetry)
+        suited = Way.suited_to(request.silhouette, symmetry)
         poses = [angle for angle, kept in angles if kept is symmetry]
         # Another pose gives more than another way.
         ways[symmetry] = [(angle, symmetry, way, hand) for way in suited for angle in poses for hand in hands]
@@ -249,7 +268,7 @@ def fits_from_uniform(request: Request) -> list[GuidedTask]:
 def symmetric_shares(request: Request, count: int) -> list[tuple[SymmetricPose, int]]:
     """Symmetries that ``count`` samples keep, and how many of them keep each."""
     grid, setting, start = request.chosen_grid, request.symmetry, request.start
-    poses = shared_symmetries(request.target, grid, setting, start, pinned=request.pinned)
+    poses = shared_symmetries(request.silhouette, grid, setting, start, pinned=request.pinned)
     poses = poses[:MOST_SYMMETRIES]
     together = count if request.symmetry in (KeptSymmetry.MIRROR, KeptSymmetry.TURN) and poses else count // 2
     each = [together // len(poses) + (place < together % len(poses)) for place in range(len(poses))]
@@ -300,6 +319,7 @@ GUIDING = RunPhase(mark("Fitting from the uniform sheet: {done} of {total} done"
 POLISHING = RunPhase(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
 SEARCHING = RunPhase(mark("Searching: {done} of {total} done"), "run.stopped_searching")
 FINISHING = RunPhase(mark("Finishing the best: {done} of {total} done"), "run.stopped_polishing")
+COVERING = RunPhase(mark("Covering the shape: {done} of {total} done"), "run.stopped_trimming")
 TRIMMING = RunPhase(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
 
 
@@ -388,29 +408,26 @@ class _Work:
 
     def trim(self) -> Iterator[Event]:
         """Trim the best that differ."""
-        chosen = worth_a_fit(self.found, self.ranking)[:TRIMMED]
+        closed = [one for one in self.found if one.trim is None]
+        chosen = worth_a_fit(closed, self.ranking)[:TRIMMED]
         yield from self._replaced(chosen, [TrimTask(candidate) for candidate in chosen], TRIMMING)
 
     def cover(self) -> Iterator[Event]:
-        """Fit sheets that cover the target with its notches filled, where no closed sheet shows them, and cut these."""
-        filled = notches_filled(self.request.target)
-        if filled is None or not self.request.fitted_starts:
+        """Make designs that cover the target of the best that differ, where closed ones show it badly."""
+        if not needs_cover(self.request, self.found):
             return
-        covering = replace(self.request, target=filled.outline, trim=False, second=None)
-        fits, found = fits_from_uniform(covering), []
-        for report in self._carried_out(fits, GUIDING, 0, len(fits), covering):
+        chosen = worth_a_fit(self.found, self.ranking)[:COVERS]
+        tasks = [CoverTask(candidate) for candidate in chosen]
+        covers: dict[int, Candidate] = {}
+        for report in self._carried_out(tasks, COVERING, 0, len(tasks)):
             if isinstance(report, Progress):
                 yield report
             elif report[1].candidate is not None:
-                found.append(report[1].candidate)
-        sheets = [candidate.sheet for candidate in worth_a_fit(found, self.ranking)[:TRIMMED]]
-        covers = scored(self.request, sheets, self._next_index(), Origin.GUIDED, fitted=True)
-        for report in self._carried_out([TrimTask(one) for one in covers], TRIMMING, 0, len(covers)):
-            if isinstance(report, Progress):
-                yield report
-            elif report[1].candidate is not None:
-                self.found.append(report[1].candidate)
-                yield CandidateFound(report[1].candidate.index, report[1].candidate)
+                covers[report[0]] = report[1].candidate
+        for place in sorted(covers):
+            cover = replace(covers[place], index=self._next_index())
+            self.found.append(cover)
+            yield CandidateFound(cover.index, cover)
 
     def _replaced(self, chosen: Sequence[Candidate], tasks: Sequence[Task], phase: RunPhase) -> Iterator[Event]:
         """Each chosen candidate as its task makes it."""
@@ -442,6 +459,16 @@ class _Work:
                     yield phase.progress(done, total)
         self.watch.check(phase.stopped, done, total)
         self.cut_short = self.cut_short or self.watch.expired()
+
+
+def needs_cover(request: Request, found: Sequence[Candidate]) -> bool:
+    """Whether designs that cover the target may show more of it than the closed ones that were found."""
+    if not request.may_cover:
+        return False
+    if no_closed_sheet_shows(request.silhouette, request.start):
+        return True
+    most = max((one.score.iou_exact for one in found if one.score.feasible), default=0.0)
+    return most < COVERED_BELOW and request.polish >= 2 * FIRST_ROUND and not request.trims
 
 
 @dataclass(frozen=True, slots=True)

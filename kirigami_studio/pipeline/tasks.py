@@ -19,7 +19,7 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
-from kirigami_studio.pipeline.redesign import kept_symmetry, trimmed
+from kirigami_studio.pipeline.redesign import covered, kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape
 from kirigami_studio.polish.junctions import junction_weight
@@ -144,10 +144,10 @@ class TrialTask:
         free, start = request.fit_options.free_rim, request.start
         with one_blas_thread():
             fit = fit_by_stages(
-                request.target, self.grid, request.phi, self.angle, self.phases, free, self.symmetry, start
+                request.silhouette, self.grid, request.phi, self.angle, self.phases, free, self.symmetry, start
             )
         (found,) = scored(request, [fit.sheet], 0, Origin.GUIDED, fitted=True)
-        match = exact_iou(fit.pose.apply(deploy(fit.sheet).outline(request.phi)), request.target)
+        match = exact_iou(fit.pose.apply(deploy(fit.sheet).outline(request.phi)), request.silhouette)
         return TaskResult(replace(found, score=replace(found.score, iou_exact=match)), fit.evaluations + 1)
 
 
@@ -163,7 +163,7 @@ class SearchTask:
         ranking = Ranking.of(request)
         with one_blas_thread():
             fits = fit_shape(
-                request.target,
+                request.silhouette,
                 request.chosen_grid,
                 request.phi,
                 self.starts,
@@ -194,11 +194,28 @@ class TrimTask:
         return TaskResult(made.candidate, made.evaluations)
 
 
+@dataclass(frozen=True, slots=True)
+class CoverTask:
+    """Make a design that covers the target of a candidate, and cut its notches."""
+
+    candidate: Candidate
+
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
+        """Fit and cut, unless the design crosses itself."""
+        sizes = {"least_panel": request.kept_when_trimmed, "even": request.even}
+        keep = request.keep if self.candidate.trim is None else self.candidate.trim.keep
+        try:
+            made = covered(self.candidate, request.target, keep, stopped, **sizes)
+        except KirigamiError:
+            return TaskResult(None, 1)
+        return TaskResult(made.candidate, made.evaluations)
+
+
 def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
-    """What a fit is to match: the target, or the symmetric shape that it is meant to be, where that is asked for."""
+    """The filled target of a fit, or the symmetric shape that it stands for, where asked for."""
     if symmetry is None or request.symmetry not in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
-        return request.target
-    return _meant(request.target, request.chosen_grid, request.start, request.symmetry, symmetry, request.pinned)
+        return request.silhouette
+    return _meant(request.silhouette, request.chosen_grid, request.start, request.symmetry, symmetry, request.pinned)
 
 
 @lru_cache(maxsize=16)

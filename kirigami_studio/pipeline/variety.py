@@ -78,6 +78,8 @@ def look_alikes(candidates: Sequence[Candidate], ranking: Ranking = USUAL) -> tu
     groups = [0] * len(candidates)
     heads: list[int] = []
     alike = _alike([candidate.sheet for candidate in candidates])
+    families = np.array([candidate.family for candidate in candidates])
+    alike &= families[:, None] == families  # a whole sheet and one with notches never look the same
     for place in sorted(range(len(candidates)), key=lambda place: ranking.key(candidates[place])):
         joined = np.flatnonzero(alike[place, heads])
         if not joined.size:

@@ -134,7 +134,7 @@ def _settings_json(settings: DesignSettings, seconds: list[SecondTarget]) -> dic
     entries = {"grid": list(settings.grid), **settings_json(settings)}
     if settings.second is not None:
         entries["second"] = {"number": seconds.index(settings.second)}
-    if not start.is_plain:
+    if not start.is_plain or start.is_auto:
         outline = None if start.outline is None else _outline_json(start.outline)
         softer = {} if start.weight == USUAL_WEIGHT else {"weight": start.weight}
         entries["start"] = {"name": start.name, "aspect": start.aspect, "outline": outline, **softer}
@@ -204,6 +204,12 @@ def _outline_json(outline: Outline) -> dict[str, object]:
         "points": outline.points.tolist(),
         "place": None if outline.place is None else list(outline.place),
         "nodes": None if outline.nodes is None else _nodes_json(outline.nodes),
+        # Left out where there are none: files stay as they were before holes.
+        **{
+            key: [hole.tolist() for hole in getattr(outline, key)]
+            for key in ("holes", "filled_holes")
+            if getattr(outline, key)
+        },
     }
 
 
@@ -217,6 +223,11 @@ def _outline(record: Record) -> Outline:
         unit=record.text("unit"),
         place=record.pair("place") if record.holds("place") else None,
         nodes=_nodes(record.record("nodes")) if record.holds("nodes") else None,
+        **{
+            key: tuple(_table(hole, f"target.{key}") for hole in record.list(key))
+            for key in ("holes", "filled_holes")
+            if record.holds(key)
+        },
     )
 
 
@@ -471,7 +482,7 @@ def _whole_pair(record: Record, name: str) -> tuple[int, int]:
     return both.whole("rows"), both.whole("columns")
 
 
-def _table(rows: list[object], place: str) -> FloatArray:
+def _table(rows: object, place: str) -> FloatArray:
     """A table of numbers from a list of lists."""
     try:
         return np.array(rows, dtype=np.float64)

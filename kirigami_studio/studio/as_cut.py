@@ -17,7 +17,7 @@ import shapely
 
 from kirigami_studio.assembly.backed import BackedSheet
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.siou import siou_of_many
+from kirigami_studio.evaluate.siou import iou_of_area
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.fabricate.centres import bending_lengths, void_hinges
 from kirigami_studio.fabricate.connectors import hinge_widths
@@ -45,8 +45,8 @@ from kirigami_studio.mechanics.closing import (
     Closing,
     carried_on,
     closing_steps,
+    covered_area,
     ideal_motion,
-    silhouette,
 )
 from kirigami_studio.mechanics.connectors import (
     ElasticSheet,
@@ -58,6 +58,7 @@ from kirigami_studio.mechanics.connectors import (
 )
 from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
 from kirigami_studio.mechanics.gripping import panels_to_pin
+from kirigami_studio.mechanics.path_contacts import contacts_on_way
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, material_for
@@ -68,6 +69,8 @@ MPA_PER_GPA = 1e3
 CLOSE_TO = math.radians(1.0)
 #: A connector counts as longer than a straight one above this (mm); coordinates are rounded to a tenth of it.
 LONGER_MM = 1e-3
+#: A sheet is closed so many times at most, each time with the contacts that the last time showed.
+MOST_CLOSINGS = 4
 #: The estimate's jam angles below this (radians) are those of contacts that close further: the sheet closes.
 ESTIMATE_CLOSES = math.radians(6.0)
 
@@ -491,7 +494,7 @@ def simulate(
     design, deployment = deployment, plan.cut_from(deployment)
     sheet = planned_sheet(deployment, plan, width_mm, kept)
     yield
-    found = yield from closing_steps(sheet)
+    found = yield from _closed_with_contacts(sheet, plan, deployment, width_mm, kept)
     jam = found.jam_phi()
     lap = None
     if target is not None:
@@ -502,6 +505,28 @@ def simulate(
     panels = cut_panels(plan).moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
     as_cut = _simulated(plan, found, jam, phi, lap)
     return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made)
+
+
+def _closed_with_contacts(
+    sheet: SheetNetwork,
+    plan: CutPlan,
+    deployment: Deployment,
+    width_mm: float,
+    kept: Sequence[FloatArray | None] | None,
+) -> Generator[None, None, Closing]:
+    """Close a sheet, and close it again as long as panels ran through each other on the way."""
+    shift = _shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2)))
+    bodies, kerf = (cut_panels(plan), plan.kerf_mm) if plan.tiles is None else (_tiled(plan, deployment), 0.0)
+    panels = bodies.moved(shift).numbered(len(plan.panels))
+    found = yield from closing_steps(sheet)
+    for _ in range(MOST_CLOSINGS - 1):
+        more = contacts_on_way(panels, found, kerf)
+        if not len(more):
+            break
+        yield
+        sheet = sheet.with_meetings(more)
+        found = yield from closing_steps(sheet)
+    return found
 
 
 def simulated(
@@ -593,8 +618,8 @@ def overlap(
     motions = [carried_on(found, deployment, width_mm, reached), ideal_motion(deployment, network, width_mm, phi)]
     if forced:
         motions.append(carried_on(found, deployment, width_mm, end))
-    rings = [silhouette(deployment, network, width_mm, motion) for motion in motions]
+    areas = [covered_area(deployment, network, width_mm, motion) for motion in motions]
     if design is not None and design is not deployment:
-        rings[1] = design.outline(phi)
-    as_cut, ideal, *shut = (siou_of_many([ring], target)[0].iou_exact for ring in rings)
+        areas[1] = shapely.Polygon(design.outline(phi))
+    as_cut, ideal, *shut = (iou_of_area(area, target) for area in areas)
     return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal)

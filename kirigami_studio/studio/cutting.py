@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from kirigami_studio.assembly.backed import LEAST_TILE_MM
 from kirigami_studio.assembly.checks import PinnedReport
 from kirigami_studio.assembly.sheet_marks import with_marks
@@ -22,6 +24,7 @@ from kirigami_studio.fabricate.tiles import TileSizes
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.mechanics.connectors import flexure_length
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     hold_options,
@@ -88,7 +91,7 @@ def plan_sheet(
     """
     tiles = None
     if is_backed(settings):
-        tiles = TileSizes(settings.gap_mm, least_mm=least_tile_mm(material_for(board_layer(settings))))
+        tiles = TileSizes(settings.gap_mm, least_mm=_board_tile_mm(settings))
     settings = hinge_layer(settings)
     machine = named_machine(settings)
     plan = plan_cuts(
@@ -142,10 +145,14 @@ def check_connectors(candidate: Candidate, options: CutOptions) -> None:
 #: or stretch: at 1 mm on sheets of 100 mm, designs of a heart, a butterfly and a gear cannot be cut without this room,
 #: and close with it.
 ROOM_IN_WIDTHS = 2.75
+#: Panels have room for their least tile times this: bows reach into panels, and tiles with narrower necks are left out.
+TILE_ROOM = 1.1
 
 
 def least_feature_mm(settings: FabricationSettings) -> float:
     """Least panel edge and neck, between centre lines of cuts, that the settings' materials allow.
+
+    Where tiles are left out round connectors, an edge between two of them has room for the least tile.
 
     Raises
     ------
@@ -156,8 +163,14 @@ def least_feature_mm(settings: FabricationSettings) -> float:
     material = material_for(cut)
     least = max(material.min_ligament_mm, material.min_panel_mm)
     if is_backed(settings):
-        least = max(least, least_tile_mm(material_for(board_layer(settings))) + 2.0 * settings.gap_mm)
+        relief = float(flexure_length(np.array(_connector_mm(cut, material)), kerf_mm(cut, material)))
+        inset, tile = TileSizes(settings.gap_mm).inset_mm(kerf_mm(cut, material)), _board_tile_mm(settings)
+        least = max(least, tile + 2.0 * relief, TILE_ROOM * tile + 2.0 * inset)
     return least + kerf_mm(cut, material)
+
+
+def _board_tile_mm(settings: FabricationSettings) -> float:
+    return least_tile_mm(material_for(board_layer(settings)))
 
 
 def least_tile_mm(board: Material) -> float:
@@ -175,8 +188,11 @@ def room_mm(settings: FabricationSettings) -> float:
     """
     cut = hinge_layer(settings)
     material = material_for(cut)
-    connector = material.connector_mm if cut.connector_mm is None else cut.connector_mm
-    return ROOM_IN_WIDTHS * connector + kerf_mm(cut, material)
+    return ROOM_IN_WIDTHS * _connector_mm(cut, material) + kerf_mm(cut, material)
+
+
+def _connector_mm(settings: FabricationSettings, material: Material) -> float:
+    return material.connector_mm if settings.connector_mm is None else settings.connector_mm
 
 
 def kerf_mm(settings: FabricationSettings, material: Material) -> float:

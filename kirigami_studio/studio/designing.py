@@ -6,14 +6,15 @@ designs are ranked by how they do as cut, and what project they make.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Mapping
+import math
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Family
 from kirigami_studio.evaluate.posed_design import trimmed_parts
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import COPY_GAP_MM
@@ -26,6 +27,8 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import symmetry_of
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.starts import RECTANGLE, TURNS_BACK, StartShape, no_closed_sheet_shows
+from kirigami_studio.outlines.turning import turn_back
 from kirigami_studio.pipeline.best_as_cut import Looking, best_as_cut
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished, Progress, Result
 from kirigami_studio.pipeline.pool import Pool
@@ -114,8 +117,16 @@ class KnownAsCut:
         return cls(one_sheet(cut), result.jam_phi, result.refusals, result.losses, found)
 
 
+@dataclass(frozen=True, slots=True)
+class StartChosen:
+    """The start that a run has chosen, and why in one sentence."""
+
+    start: StartShape
+    reason: str
+
+
 #: What a run reports.
-RunReport = Event | ModelFound | GridChosen | Decoded
+RunReport = Event | ModelFound | GridChosen | StartChosen | Decoded
 #: What fitting designs again reports.
 RefitReport = Decoded | FittedAgain | Progress | KnownAsCut
 #: Gets how far a run has come.
@@ -145,6 +156,9 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
+    gap_mm = pin_gap_mm(cut)
+    if gap_mm and target.holes:
+        raise FabricationError("pinned.target_has_holes", count=len(target.holes))
     return Request.of(
         target,
         wanted,
@@ -153,7 +167,7 @@ def request_for(
         width_mm=cut.width_mm,
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
         room_mm=sizes_of(cut)[1],
-        least_gap_mm=pin_gap_mm(cut),
+        least_gap_mm=gap_mm,
     )
 
 
@@ -166,7 +180,7 @@ def run_design(
     beside: tuple[Candidate, ...] = (),
     only_new: bool = False,
     pool: Pool | None = None,
-) -> Iterator[Event | GridChosen]:
+) -> Iterator[Event | GridChosen | StartChosen]:
     """Choose the grid, run, and rank by how designs do as cut: the best that can be cut in this material first.
 
     Parameters
@@ -184,16 +198,20 @@ def run_design(
 
     Yields
     ------
-    Event or GridChosen
-        Those of the pipeline, ``GridChosen`` first where that was left to the run, and at last ``Finished``.
+    Event, GridChosen or StartChosen
+        Those of the pipeline, what was left to the run first, and at last ``Finished``.
 
     Raises
     ------
     Cancelled
         ``cancel`` returned true.
     """
-    from kirigami_studio.pipeline.run import grid_choice, run, with_grid
+    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, with_grid
 
+    if request.start.is_auto and request.near is None:
+        chosen = start_choice(request)
+        yield StartChosen(chosen.start, chosen.reason)
+        request = request.with_start(chosen.start)
     if request.grid is None and request.near is None:
         choice = grid_choice(request)
         yield GridChosen(choice.grid, choice.reason)
@@ -213,9 +231,44 @@ def run_design(
 
 def why_untrimmed(result: Result) -> Note | None:
     """Why no design of a run was trimmed as asked for; None where one is."""
-    if not result.request.trim or any(one.trim is not None for one in result.candidates):
+    if not result.request.trims or any(one.trim is not None for one in result.candidates):
         return None
     return Note("design.trimming_cut_short" if result.budget_ended else "design.none_trimmed", {})
+
+
+def first_of_families(candidates: Sequence[Candidate]) -> dict[Family, tuple[int, Candidate]]:
+    """Place and design of the first of each family, of candidates sorted best first."""
+    found: dict[Family, tuple[int, Candidate]] = {}
+    for place, candidate in enumerate(candidates):
+        found.setdefault(candidate.family, (place, candidate))
+    return found
+
+
+def why_covered(candidates: Sequence[Candidate], target: Outline | None, start: StartShape = RECTANGLE) -> Note | None:
+    """Why there are designs of which parts are cut away beside closed ones: what each family shows at most.
+
+    Returns
+    -------
+    Note or None
+        None without a target, and where there are designs of one family alone.
+    """
+    best: dict[Family, Candidate] = {}
+    for one in candidates:
+        if one.score.feasible and (one.family not in best or one.match > best[one.family].match):
+            best[one.family] = one
+    if target is None or len(best) < len(Family):
+        return None
+    closed, cover = best[Family.CLOSED], best[Family.COVER]
+    figures = {"closed": 100.0 * closed.match, "cover": 100.0 * cover.match, "given_up": 100.0 * cover.given_up}
+    target = target.filled
+    back = turn_back(target)
+    if back.angle >= TURNS_BACK:
+        low, high = target.points.min(axis=0), target.points.max(axis=0)
+        across, up = 100.0 * (back.stretch.mean(axis=0) - low) / (high - low)
+        return Note.of("covers.turns_back", degrees=math.degrees(back.angle), across=across, up=up, **figures)
+    if no_closed_sheet_shows(target, start):
+        return Note.of("covers.many_arms", sides=start.sides, **figures)
+    return Note.of("covers.better", **figures)
 
 
 def completed(run: Iterator[object], tell: Tell) -> Result:
@@ -281,12 +334,18 @@ def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: floa
     from kirigami_studio.pipeline.redesign import keep_for_connectors
 
     least = least_panel_mm * width_in_cells(request.chosen_grid, request.start) / cut.width_mm
-    if not request.trim:
-        return replace(request, least_panel=least)
+    request = replace(request, least_panel=least)
+    if not request.trims and not request.may_cover:
+        return request
     # How deep material has to stay at the hinges of a trimmed sheet so that its connectors hold.
     cut = hinge_layer(cut)
     widths = (cut.width_mm, cut.connector_mm, cut.kerf_mm)
-    return replace(request, least_panel=least, keep=keep_for_connectors(request.uniform, material_for(cut), *widths))
+    try:
+        return replace(request, keep=keep_for_connectors(request.uniform, material_for(cut), *widths))
+    except FabricationError:
+        if request.trims:
+            raise
+        return replace(request, covers=False)
 
 
 def generating(

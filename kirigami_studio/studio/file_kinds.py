@@ -40,6 +40,9 @@ FILE_KINDS = (
     FileKind(".stl", mark("STL solid, mm"), mark("The sheet as one closed body, to print or to mill"), True),
     FileKind(".3mf", mark("3MF solid, mm"), mark("Closed bodies with names and colours of the layers, to print"), True),
     FileKind(".obj", mark("OBJ solid, mm"), mark("Closed bodies with names, for modelling programs"), True),
+    FileKind(".fold", mark("FOLD, mm"), mark("Panels, cuts and hinges at five angles, for origami programs"), False),
+    FileKind(".xml", mark("MuJoCo model"), mark("Rigid parts on hinges with contacts (MJCF), to simulate"), False),
+    FileKind(".csv", mark("Tables, mm"), mark("Panels and hinges, for spreadsheets and scripts"), False),
 )
 
 

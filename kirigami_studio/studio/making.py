@@ -617,7 +617,8 @@ def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:
     settings, sheet, target = request.settings, backing.sheet, None
     hold = hold_options(board_layer(settings))
     if request.target is not None:
-        target = request.candidate.final_pose.inverse().apply(request.target.points) * sheet.cell_mm
+        back = request.candidate.final_pose.inverse()
+        target = tuple(back.apply(ring) * sheet.cell_mm for ring in request.target.rings)
     return AssemblyJob(
         backing.assembly,
         backing.material,
@@ -683,7 +684,7 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.project.store import packed_design
 
-    target = None if request.target is None else request.target.points
+    target = None if request.target is None else request.target.rings
     job = ExportJob.of(request.candidate, target, None if made is None else made.plan)
     machine = machine_for(request.settings) if made is not None else None
     bed = machine.reach_mm if machine is not None and machine.kind is MachineKind.PRINTER else (0.0, 0.0)
@@ -700,6 +701,7 @@ def export_job(request: CutRequest, made: Planned | None) -> ExportJob:
         markers=request.settings.markers,
         provenance=request.facts,
         width_mm=request.settings.width_mm,
+        thickness_mm=material_for(request.settings).thickness_mm,
         artwork=request.artwork,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
     )

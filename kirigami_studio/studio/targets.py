@@ -22,7 +22,7 @@ from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.merging import Join, Merging, merged, usual_outline
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import ALL, LARGEST, SourceParts, Strokes
-from kirigami_studio.outlines.pieces import largest_piece
+from kirigami_studio.outlines.pieces import largest_piece, rings_of
 from kirigami_studio.outlines.read import PART_READERS, PICTURES, has_parts, is_picture, read_parts, read_target
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.starts import StartShape, outline_start
@@ -62,7 +62,12 @@ class TargetRead:
     picture: Picture | None = None
 
 
-def outline_of(source: object, choice: PartChoice | None = None, threshold: float | None = None) -> Outline:
+def outline_of(
+    source: object,
+    choice: PartChoice | None = None,
+    threshold: float | None = None,
+    fill_holes: bool | None = None,
+) -> Outline:
     """The outline of a library silhouette, a file, points, a mask or a Shapely geometry.
 
     Parameters
@@ -71,6 +76,8 @@ def outline_of(source: object, choice: PartChoice | None = None, threshold: floa
         Of the parts of a drawing.
     threshold : float, 0..1, optional
         Grey level of a picture.
+    fill_holes : bool, optional
+        Whether holes are filled; by default those around which only a line would stay.
 
     Raises
     ------
@@ -79,6 +86,11 @@ def outline_of(source: object, choice: PartChoice | None = None, threshold: floa
     UsageError
         Parts of what is no drawing.
     """
+    return _seen(source, choice, threshold).with_holes(fill_holes)
+
+
+def _seen(source: object, choice: PartChoice | None, threshold: float | None) -> Outline:
+    """The outline with the holes that are seen as such."""
     if isinstance(source, (str, os.PathLike)):
         return _read(source, choice, threshold)
     if choice is not None:
@@ -88,8 +100,9 @@ def outline_of(source: object, choice: PartChoice | None = None, threshold: floa
     if isinstance(source, Polygon) and not source.is_empty and not source.is_valid:
         return Outline.from_points(source.exterior.coords)  # crossings are undone where it is clear what is meant
     if isinstance(source, BaseGeometry):
-        ring, notes = largest_piece(source)
-        return Outline.from_points(ring, notes=notes)
+        piece, notes = largest_piece(source)
+        ring, holes = rings_of(piece)
+        return Outline.from_points(ring, notes=notes, holes=holes)
     try:
         values = np.asarray(source)
     except (TypeError, ValueError):  # rows of unequal lengths

@@ -14,7 +14,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.opened_size import opened_size
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.second_target import SecondMatch
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, ShapeRings
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.laying import start_match
@@ -24,6 +24,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 
 #: Starts that are no silhouettes, by what their names begin with.
 START_NAMES = {
+    "auto": mark("auto"),
     "rectangle": mark("rectangle"),
     "square": mark("square"),
     "circle": mark("circle"),
@@ -31,6 +32,8 @@ START_NAMES = {
     "triangle": mark("triangle"),
     "hexagon": mark("hexagon"),
     "polygon": mark("polygon"),
+    "gable": mark("gable"),
+    "notch": mark("notched rectangle"),
 }
 
 
@@ -87,7 +90,7 @@ class State:
     """One end of the motion."""
 
     name: str  #: of the start, or of the target
-    outline: FloatArray  #: (P, 2); what the sheet is to look like, y up, of any size
+    outline: ShapeRings  #: (P, 2), and its holes; what the sheet is to look like, y up, of any size
     size_mm: tuple[float, float]  #: (width, height), mm; of the flat sheet; of the target as the opened sheet shows it
     #: 0..1, or None; IoU of the sheet with that outline; None where the sheet is trimmed: its edge is cut off.
     match: float | None
@@ -178,7 +181,7 @@ class TwoStates:
         opened = opened_size(deployment, design.pose, target, width_mm).opened
         return cls(
             State(start_of(candidate), outline, flat, match_of_start(sheet) if trim is None else None),
-            State(tr(target.name), target.points, opened, candidate.score.iou_exact if trim is None else trim.iou),
+            State(tr(target.name), target.rings, opened, candidate.score.iou_exact if trim is None else trim.iou),
             candidate.final_phi,
             None if candidate.second is None else PassedState.of(candidate, candidate.second, width_mm),
         )

@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -152,7 +154,9 @@ _ANSWERS = {
     (Question.FILES, AnswerState.OPEN): mark("no files read yet"),
 }
 #: Findings that answer a question; files have those of their reading, the material all others.
-_MATCH_FINDINGS = frozenset({"as_cut.loses_match", "as_cut.does_not_match"})
+_MATCH_FINDINGS = frozenset(
+    {"as_cut.loses_match", "as_cut.does_not_match", "trim.hole_too_small", "trim.hole_holds_sheet"}
+)
 _CLOSING_FINDINGS = frozenset(
     {
         NEARLY,
@@ -396,13 +400,14 @@ class CloseLook:
     refusal: Note | None
     #: How it does as cut; None where nobody had to look so far, or where that cannot be told
     as_cut: AsCut | None = None
+    gained: float = 0.0  #: Match (IoU) that pieces on pins have beyond their sheet
 
     @property
     def loss(self) -> float:
         """Worth (IoU) lost by being cut: match, and for the stretch of its connectors."""
         if self.as_cut is None:
             return 0.0
-        return (self.as_cut.lost or 0.0) + STRETCH * self.as_cut.stretch
+        return (self.as_cut.lost or 0.0) + STRETCH * self.as_cut.stretch - self.gained
 
 
 def look_at(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> CloseLook:
@@ -453,7 +458,8 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made, settings)
-    return CloseLook(None if found.ok else found.problems[0], made.as_cut)
+    gained = made.report.figures.match - candidate.score.iou_exact
+    return CloseLook(None if found.ok else found.problems[0], made.as_cut, gained)
 
 
 def refused(error: KirigamiError) -> Verdict:
@@ -485,6 +491,7 @@ def judge(
     problems = [
         *_of_files(verifications, candidate.final_phi, known),
         *_of_design(candidate),
+        *_of_holes(candidate, plan.size_mm[0]),
         *(_weighed(problem) for problem in report.problems if problem.code not in STRAINED),
         *_of_wishes(plan),
         *_of_jam(known),
@@ -557,6 +564,7 @@ def expected(
     refusal = ranking.refusals.get(candidate)
     problems = [
         *_of_design(candidate),
+        *_of_holes(candidate, ranking.width_mm),
         *_of_room(candidate, ranking),
         *([] if refusal is None else _of_refusal(refusal)),
         *_of_jam(as_cut),
@@ -570,7 +578,7 @@ def match_of(candidate: Candidate, as_cut: AsCut | None) -> float:
     """IoU with the target: as cut where that is known, else as designed and trimmed."""
     if as_cut is not None and as_cut.iou is not None:
         return as_cut.iou
-    return candidate.score.iou_exact if candidate.trim is None else candidate.trim.iou
+    return candidate.match
 
 
 def _worst_first(problems: Iterable[Problem]) -> tuple[Problem, ...]:
@@ -599,6 +607,23 @@ def _of_wishes(plan: CutPlan) -> list[Problem]:
 def _of_design(candidate: Candidate) -> list[Problem]:
     """A sheet that was fitted for trimming is free of contacts; its score is that of the sheet before."""
     return [] if candidate.score.feasible or candidate.trim is not None else [Problem.error("rank.not_feasible")]
+
+
+def _of_holes(candidate: Candidate, width_mm: float) -> list[Problem]:
+    """Holes of the target that the trimmed sheet does not show, and where on it they would be."""
+    trim = candidate.trim
+    if trim is None or not trim.closed_holes:
+        return []
+    flat = deploy(trim.sheet).compact
+    low, scale = flat.min(axis=0), width_mm / float(np.ptp(flat[:, 0]))
+    problems = []
+    for small in (True, False):
+        closed = [hole for hole in trim.closed_holes if hole.is_small is small]
+        if closed:
+            x, y = ((np.array(closed[0].place) - low) * scale).tolist()
+            code, where = "trim.hole_too_small" if small else "trim.hole_holds_sheet", {"x": x, "y": y}
+            problems.append(Problem.warning(code, (x, y), count=len(closed), total=len(trim.holes), **where))
+    return problems
 
 
 def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.gui.stage.fault_items import FaultKind, contact_place, faults, inverted_panels
-from kirigami_studio.gui.stage.layout_items import candidate_pixmap
+from kirigami_studio.gui.stage.layout_items import candidate_pixmap, target_pixmap
 from kirigami_studio.gui.widgets import icons, theme
 from kirigami_studio.gui.widgets.mismatch_items import mismatch
 from kirigami_studio.gui.widgets.paths import DOZEN, FEW, line_path, paths_of_quads
@@ -20,6 +20,7 @@ from kirigami_studio.gui.widgets.theme import DARK, LIGHT, PALETTES, Palette, st
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.project.document import Document
 
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
@@ -113,6 +114,22 @@ def test_that_differences_are_shares_of_the_target() -> None:
     assert areas.extra_share == pytest.approx(0.125)
     bow = np.array([(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])
     assert mismatch(SQUARE, bow).missing_share == pytest.approx(0.5)
+
+
+def test_that_a_hole_is_missing_where_it_is_covered_and_open_where_panels_and_voids_went() -> None:
+    hole = np.array([(0.25, 0.25), (0.75, 0.25), (0.75, 0.75), (0.25, 0.75)])
+    assert mismatch((SQUARE, hole), SQUARE).extra_share == pytest.approx(0.25 / 0.75)
+    left, right = hole * (0.4, 1.0) + (0.15, 0.0), hole * (0.4, 1.0) + (0.45, 0.0)
+    void = np.array([[left[1], right[0], right[3], left[2]]])
+    cut = [left, right]
+    assert mismatch((SQUARE, hole), SQUARE, cut).extra_share == pytest.approx(0.05 / 0.75)
+    areas = mismatch((SQUARE, hole), SQUARE, cut, void)
+    assert areas.extra_share == pytest.approx(0.0, abs=1e-6) and areas.missing_share == pytest.approx(0.0, abs=1e-6)
+
+
+def test_that_a_target_is_drawn_with_its_holes(qapp: QApplication) -> None:
+    image = target_pixmap(load("ring"), QSize(80, 80), 1.0, LIGHT).toImage()
+    assert image.pixelColor(40, 40).alpha() == 0 and image.pixelColor(12, 40).name() == LIGHT.target_fill
 
 
 @pytest.mark.parametrize("ratio", [1.0, 2.0])

@@ -128,7 +128,7 @@ def test_that_the_board_has_the_keys_as_soon_as_it_opens(heart: MainWindow, qtbo
     heart.commands["edit_target"].trigger()
     assert heart.focusWidget() is heart.target.view
     qtbot.keyClick(heart.focusWidget(), Qt.Key.Key_Escape)
-    assert not heart.target.editing and heart.focusWidget() is heart.stage.welcome
+    assert not heart.target.editing and heart.focusWidget() is heart.stage.view
 
 
 def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: MainWindow, qtbot: QtBot) -> None:
@@ -271,12 +271,43 @@ def test_that_shapes_are_added_and_taken_away_where_they_are_drawn(plate: MainWi
         assert placed(plate).polygon.bounds == pytest.approx(bounds, abs=1e-4)
 
 
-def test_that_a_hole_is_refused_with_a_sentence_and_nothing_changes(plate: MainWindow) -> None:
-    before = plate.session.document
+def test_that_a_cut_inside_is_a_hole_which_a_double_click_or_the_switch_fills(plate: MainWindow) -> None:
+    assert plate.target.fill.isHidden()
     use(plate, Tool.RECTANGLE, Combine.SUBTRACT)
-    drag(plate, (-10, -5), (10, 5))
-    assert plate.session.document is before
-    assert "hole" in plate.messages.messages[-1].sentence
+    drag(plate, (-15, -5), (-5, 5))
+    drag(plate, (5, -5), (10, 5))
+    target = plate.session.document.target
+    assert target is not None and len(target.holes) == 2
+    assert plate.target.fill.text().endswith("(2 holes)") and not plate.target.fill.isChecked()
+    use(plate, Tool.POSE)
+    double_click(plate, (-10, 0))
+    assert plate.session.history.undo_label == "Fill hole"
+    assert placed(plate).polygon.area == pytest.approx(800 - 50, rel=1e-6)
+    plate.target.fill.click()
+    assert plate.session.history.undo_label == "Fill holes"
+    filled = plate.session.document.target
+    assert filled is not None and not filled.holes and filled.size == target.size
+    plate.target.fill.click()
+    assert plate.session.history.undo_label == "Open holes" and plate.session.document.target == target
+    for label in ("Open holes", "Fill holes", "Fill hole", "Subtract rectangle", "Subtract rectangle"):
+        assert plate.session.history.undo_label == label
+        plate.commands["undo"].trigger()
+    assert plate.target.fill.isHidden()
+
+
+def test_that_a_hole_between_objects_is_filled_and_opened(plate: MainWindow) -> None:
+    for left, bottom, right, top in ((-20, 10, 20, 20), (-20, 40, 20, 50), (-20, 10, -10, 50), (10, 10, 20, 50)):
+        use(plate, Tool.RECTANGLE, Combine.NEW)
+        drag(plate, (left, bottom), (right, top))
+    assert len(plate.session.document.drawing) == 5
+    target = plate.session.document.target
+    assert target is not None and len(target.holes) == 1
+    plate.target.fill.click()
+    filled = plate.session.document.target
+    assert filled is not None and not filled.holes
+    plate.target.fill.click()
+    assert plate.session.document.target == target
+    plate.target.view.grab()
 
 
 def test_that_the_board_stays_still_while_shapes_are_added(plate: MainWindow) -> None:

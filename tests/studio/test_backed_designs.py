@@ -24,6 +24,7 @@ from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.fabricate.cut_panels import cut_panels
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.hold import HoldKind, HoldWhen
+from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.options import BoardCut
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
@@ -36,6 +37,7 @@ from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.as_cut import Source, estimate
 from kirigami_studio.studio.checking import checked_together
+from kirigami_studio.studio.cutting import least_feature_mm
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
@@ -279,3 +281,14 @@ def test_that_small_pictures_show_tiles_on_cloth(square: Document, made: Planned
     assert all(under.covers(Polygon(rings[number])) for number in tiles)
     design = Design(square)
     assert design._repr_svg_().count("<path") > 3 and "#e2dbcc" in design._repr_svg_()
+
+
+def test_that_an_edge_of_a_panel_has_room_for_the_least_tile_between_two_connectors() -> None:
+    """Fits go to the bound; at the size of a tile and its gaps alone three to five tiles of a house were missing."""
+    settings = new_settings({"material": "felt-co2"})
+    felt, cotton = find_material("felt-co2"), find_material("cotton-co2")
+    bends_mm = cotton.kerf_mm + 1.275 * cotton.connector_mm
+    assert least_feature_mm(settings) == pytest.approx(felt.min_panel_mm + 2.0 * bends_mm + cotton.kerf_mm)
+    # Tiles that are a wide gap smaller have some room besides: at the bound itself they are left out.
+    least_mm = 1.1 * felt.min_panel_mm + 2.0 * (5.0 + 0.5 * cotton.kerf_mm) + cotton.kerf_mm
+    assert least_feature_mm(replace(settings, gap_mm=5.0)) == pytest.approx(least_mm)

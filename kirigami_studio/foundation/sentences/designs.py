@@ -50,6 +50,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Mouths on the rim's {side} side must lie between 0 and {length:g} cells, in rising order and at least "
         "{least:g} cells apart."
     ),
+    "start.few_corners": mark(
+        "The flat sheet is a rectangle: the shape needs no other corners, and is expected to match {percent:.0f} %."
+    ),
+    "start.rectangle_tried": mark(
+        "The flat sheet is a rectangle: of {count} starts that were tried none is clearly better."
+    ),
+    "start.other_tried": mark(
+        "The flat sheet is '{name}', the best of {count} starts that were tried: the shape needs {sides} sides."
+    ),
     "start.not_points": mark("A start outline must be a list of at least three points [x, y] with finite numbers."),
     "start.crosses_itself": mark("The start outline crosses itself or has no area. Use one simple closed shape."),
     "start.not_convex": mark(
@@ -106,6 +115,18 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "trim.crosses_itself": mark(
         "This design crosses itself at the target angle, so it cannot be trimmed. Choose another design."
     ),
+    "trim.hole_too_small": mark_n(
+        "{count} of {total} holes stays closed, for it is smaller than the panels at x = {x:.1f}, y = {y:.1f} mm. "
+        "Choose more rows and columns, or fill it.",
+        "{count} of {total} holes stay closed, for they are smaller than the panels there, as at x = {x:.1f}, "
+        "y = {y:.1f} mm. Choose more rows and columns, or fill them.",
+    ),
+    "trim.hole_holds_sheet": mark_n(
+        "{count} of {total} holes stays closed, for the sheet would fall apart there, near x = {x:.1f}, "
+        "y = {y:.1f} mm. Choose more rows and columns, make it smaller, or fill it.",
+        "{count} of {total} holes stay closed, for the sheet would fall apart there, as near x = {x:.1f}, "
+        "y = {y:.1f} mm. Choose more rows and columns, make them smaller, or fill them.",
+    ),
     "trim.nothing_left": mark("No part of the sheet lies mostly on the target. Lay the sheet over the target first."),
     "trim.keep_out_of_range": mark(
         "The material kept at hinges must be {least:g} to {most:g} cells deep, got {keep!r:.80}."
@@ -142,6 +163,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "grid.finer_tried": mark(
         "{rows} x {columns}: in short fits on {count} grids, coarser ones matched noticeably less. "
         "Expected match: {percent:.1f} %."
+    ),
+    "grid.finer_for_holes": mark(
+        "{rows} x {columns}: finer than the outline needs, so that holes and the walls beside them are no smaller than "
+        "panels allow. Expected match: {percent:.1f} %."
     ),
     "grid.panels_would_be_too_small": mark(
         "{rows} x {columns}: on a finer grid, panels of a sheet {width_mm:.0f} mm wide would be smaller than "
@@ -200,6 +225,19 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "model.unknown_variant": mark("There is no generator variant '{variant:.40}'. Choose one of {choices}."),
     # pipeline
+    "covers.better": mark(
+        "Closed sheets match by {closed:.1f} % at most; with parts cut away {cover:.1f} %, {given_up:.0f} % of the "
+        "sheet."
+    ),
+    "covers.many_arms": mark(
+        "No closed sheet of {sides:.0f} sides shows so many arms: {closed:.1f} % is the most found; with notches "
+        "{cover:.1f} %, {given_up:.0f} % of the sheet cut away."
+    ),
+    "covers.turns_back": mark(
+        "No closed sheet shows the notch at {across:.0f} % of the width and {up:.0f} % of the height, where the "
+        "outline turns back by {degrees:.0f} degrees: {closed:.1f} % is the most found; with notches {cover:.1f} %, "
+        "{given_up:.0f} % of the sheet cut away."
+    ),
     "fit.stopped": mark("Fitting stopped; nothing changed."),
     "rank.best_balance": mark("Best balance: match {match:.1f} %, panel sizes vary by {variation:.0f} %."),
     "rank.best_balance_symmetric": mark(
@@ -215,6 +253,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Best of both targets: match {match:.1f} %, and {second:.1f} % with the second one at {angle:.0f} degrees."
     ),
     "rank.equal": mark("As good as the first design."),
+    "rank.gives_up": mark("It cuts {own:.0f} % of the sheet away, the first design {first:.0f} %."),
     "rank.jams": mark("As cut, it is estimated to jam at {own:.0f} degrees."),
     "rank.less_as_cut": mark(
         "As cut, it loses {own:.2f} % of its match and by stretched connectors, the first design {first:.2f} %."
@@ -232,10 +271,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "rank.not_symmetric": mark("The first design is symmetric, this one is not."),
     "rank.not_trimmed": mark("It is not trimmed."),
     "rank.notch_cut_out": mark_n(
-        "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
-        "are cut out of it with {count} panel.",
-        "Match once trimmed: {match:.1f} %. No closed sheet shows such notches; this one covers them, and they "
-        "are cut out of it with {count} panels.",
+        "Match {match:.1f} %, gives up {percent:.0f} % of the sheet: it covers the notches, and they are cut out of it "
+        "with {count} panel.",
+        "Match {match:.1f} %, gives up {percent:.0f} % of the sheet: it covers the notches, and they are cut out of it "
+        "with {count} panels.",
+    ),
+    "rank.holes_cut_out": mark_n(
+        "Match once trimmed: {match:.1f} %. The sheet covers its holes; they are cut out of it with {count} panel.",
+        "Match once trimmed: {match:.1f} %. The sheet covers its holes; they are cut out of it with {count} panels.",
     ),
     "rank.pins_too_near": mark("Pins come as near as {gap_mm:.1f} mm; their ears need {least_mm:.1f} mm."),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),

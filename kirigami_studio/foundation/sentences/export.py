@@ -188,6 +188,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The GIF did not read back as planned: {found} frames instead of {planned}, or another size. Nothing was "
         "written. Please report it."
     ),
+    "linkage.not_as_written": mark("{name} did not read back as it was written. Write it again, or to another place."),
+    "linkage.apart": mark("Only {together} of {parts} parts hang together by hinges. Trim less, then write the model."),
     "page.not_as_written": mark(
         "The page did not read back as planned: {name:.40}. Nothing was written. Please report it."
     ),
@@ -349,6 +351,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "cut_file.copies_differ": mark(
         "The file promises {promised:.20} copies of a sheet; those in it are not alike or not apart. Export it again."
+    ),
+    "cut_file.holes_differ": mark_n(
+        "{count} hole of the silhouette is cut, where the file promises {promised}. Export it again.",
+        "{count} holes of the silhouette are cut, where the file promises {promised}. Export it again.",
     ),
     "cut_file.joins_differ": mark_n(
         "{count} cut ends on another cut, where the file promises {promised:.20}: a connector is lost or a slit "

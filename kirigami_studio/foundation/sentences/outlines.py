@@ -210,6 +210,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "({x:.6g}, {y:.6g}). Build it with Outline.from_points."
     ),
     "outline.crosses_itself": mark("An outline must not touch or cross itself. Build it with Outline.from_points."),
+    "outline.too_many_holes": mark("An outline has at most {limit} holes, got {holes}. Fill the small ones."),
     "outline.no_such_vertex": mark("An outline of {vertices} vertices has no vertex {index}."),
     "nodes.wrong_tables": mark("The nodes of an outline must be at least {fewest}, in tables of the same length."),
     "nodes.not_in_order": mark("The nodes of an outline must follow each other in its order."),
@@ -238,7 +239,6 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "combine.no_change": mark(
         "The shape changes nothing: it lies inside the target. Draw it across the target's edge."
     ),
-    "combine.hole": mark("The shape would cut a hole, which a sheet cannot show. Draw it across the target's edge."),
     "combine.half_empty": mark("That half of the target is empty. Choose the other one."),
     "mirror.nothing_on_side": mark("Nothing of the drawing is on the side of the axis that is mirrored."),
     "mirror.images_apart": mark("The shape and its mirror image do not touch. Draw it across the dashed axis."),

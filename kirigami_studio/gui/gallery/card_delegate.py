@@ -91,7 +91,7 @@ class CardDelegate(Cards):
         if candidate == self.compared:
             self._paint_chip(painter, card, "", "compare")
         elif candidate.trim is not None:
-            self._paint_chip(painter, card, f"{number(100 * candidate.trim.iou, '.1f')} %", "trim")
+            self._paint_chip(painter, card, f"\N{MINUS SIGN}{number(100 * candidate.given_up, '.0f')} %", "trim")
         elif rise >= SMALLEST_RISE:
             self._paint_chip(painter, card, number(100 * rise, "+.1f"))
         else:
@@ -171,7 +171,6 @@ class CardDelegate(Cards):
 
     def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate, value: str, apart: str) -> None:
         """Match and sort value; ``apart`` tells designs of several grids or starts apart."""
-        score = candidate.score
         text = _text_of(card)
         left, right = int(Qt.AlignmentFlag.AlignLeft), int(Qt.AlignmentFlag.AlignRight)
         top, bottom = int(Qt.AlignmentFlag.AlignTop), int(Qt.AlignmentFlag.AlignBottom)
@@ -181,7 +180,7 @@ class CardDelegate(Cards):
         bold.setWeight(QFont.Weight.DemiBold)
         painter.setFont(bold)
         painter.setPen(QColor(self.palette_.text))
-        painter.drawText(text, left | top, f"{number(100 * score.iou_exact, '.1f')} %")
+        painter.drawText(text, left | top, f"{number(100 * candidate.match, '.1f')} %")
         painter.setFont(plain)
         painter.setPen(QColor(self.palette_.muted))
         metrics, line = painter.fontMetrics(), text.adjusted(0, 0, -22, 0)

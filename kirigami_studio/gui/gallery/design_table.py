@@ -125,7 +125,7 @@ class TableCards(Cards):
         painter.setFont(bold)
         painter.setPen(QColor(self.palette_.text))
         middle = int(Qt.AlignmentFlag.AlignVCenter)
-        match = tr("{match:.1f} %", match=100.0 * candidate.score.iou_exact)
+        match = tr("{match:.1f} %", match=100.0 * candidate.match)
         painter.drawText(box, middle | int(Qt.AlignmentFlag.AlignRight), match)
         room = box.width() - painter.fontMetrics().horizontalAdvance(match) - 12
         signs = self._signs(index, candidate, mark)
@@ -183,7 +183,7 @@ class TableCards(Cards):
             tr("smallest {size:.1f} mm", size=index.data(FEATURE_ROLE)),
         ]
         if trim is not None:
-            parts.append(tr("trimmed {iou:.1f} %", iou=100.0 * trim.iou))
+            parts.append(tr("gives up {percent:.0f} %", percent=100.0 * candidate.given_up))
         if candidate.second is not None:
             parts.append(tr("second {match:.1f} %", match=100.0 * candidate.second.match.iou_exact))
         text = "  ·  ".join(parts)

@@ -25,6 +25,7 @@ class FilterControls(QObject):
         super().__init__(parent)
         check = partial(_check, prefix)
         self.works = check("worksOnly", tr("Works"), tr("Leave out designs whose verdict is “Will not work”."))
+        self.whole = check("wholeOnly", tr("Whole"), tr("Leave out designs of which parts of the sheet are cut away."))
         self.pinned = check("pinnedOnly", tr("Pinned"), tr("Show only pinned designs."))
         self.rejected = check("showRejected", tr("Rejected"), tr("Also show rejected designs (dimmed)."))
         self.pinned_first = check("pinnedFirst", tr("Pinned first"), tr("Show pinned designs before all others."))
@@ -46,6 +47,7 @@ class FilterControls(QObject):
         #: Boxes and numbers by the fields of a selection; numbers are shown so many times as large.
         self._boxes = {
             "works_only": self.works,
+            "whole_only": self.whole,
             "pinned_only": self.pinned,
             "show_rejected": self.rejected,
             "pinned_first": self.pinned_first,
@@ -86,14 +88,14 @@ class FilterControls(QObject):
             row(box, ..., label(caption, number, name=""), number)
             for box, (caption, number) in zip(boxes, self.numbers, strict=True)
         ]
-        column(row(self.works, self.pinned, ...), *lines, on=pane, spacing=6, margins=(0, 0, 0, 2))
+        column(row(self.works, self.whole, self.pinned, ...), *lines, on=pane, spacing=6, margins=(0, 0, 0, 2))
         return pane
 
     def wide(self) -> QWidget:
         """The numbers and the most used boxes in one row; the others stay in the narrow pane."""
         pane = QWidget()
         pairs = [row(label(caption, number, name=""), number, spacing=5) for caption, number in self.numbers]
-        row(*pairs, self.works, self.pinned, self.rejected, self.grouped, on=pane, spacing=10)
+        row(*pairs, self.works, self.whole, self.pinned, self.rejected, self.grouped, on=pane, spacing=10)
         self.pinned_first.setParent(pane)
         self.pinned_first.hide()
         return pane

@@ -491,6 +491,7 @@ def came_from(candidate: Candidate) -> list[str]:
         Origin.GUIDED: tr("Fitted from the uniform sheet"),
         Origin.SEARCHED: tr("Seed {seed}, found by the search", seed=candidate.seed),
         Origin.RESAMPLED: tr("Seed {seed}, generated near another design", seed=candidate.seed),
+        Origin.COVERED: tr("Fitted to cover the target; what sticks out of it is cut away"),
         Origin.EDITED: tr("Seed {seed}, sample {index}, edited by hand", seed=candidate.seed, index=candidate.index),
     }[candidate.origin]
     polished = [tr("Polished")] if candidate.polished else []

@@ -32,11 +32,23 @@ class GalleryPanel(Card):
         self.count = FittingLabel()
         self.count.setContentsMargins(0, 0, 8, 0)
         self.header.addWidget(self.count)
+        #: Why there are designs of which parts are cut away, beside closed ones.
+        self.why = QLabel()
+        self.why.setObjectName("whyCovered")
+        self.why.setWordWrap(True)
+        self.why.setContentsMargins(0, 0, 8, 4)
+        self.show_why("")
         self.body.addWidget(self.bar)
+        self.body.addWidget(self.why)
         self.body.addWidget(self.view, 1)
         self.view.model_.arranged.connect(self._count)
         self.view.clear_wanted.connect(self.bar.show_all)
         self.bar.selection_changed.connect(self._select)
+
+    def show_why(self, text: str) -> None:
+        """Say above the cards why there are designs of which parts are cut away; "" for nothing."""
+        self.why.setText(text)
+        self.why.setVisible(bool(text))
 
     def _select(self, selection: Selection) -> None:
         self.view.select(selection)

@@ -37,6 +37,7 @@ class Selection:
     pinned_first: bool = False
     pinned_only: bool = False
     works_only: bool = False  #: whether designs are left out whose verdict is that they will not work
+    whole_only: bool = False  #: whether designs are left out of which parts are cut away
     show_rejected: bool = False
     least_match: float = 0.0  #: 0..1; exact IoU that a design has at least
     most_variation: float = 0.0  #: coefficient of variation of panel areas that a design has at most; 0 for any
@@ -50,7 +51,7 @@ class Selection:
     def filters(self) -> bool:
         """Whether more is left out than rejected designs."""
         numbers = (self.least_match, self.most_variation, self.least_feature_mm)
-        return self.pinned_only or self.works_only or max(numbers) > 0.0
+        return self.pinned_only or self.works_only or self.whole_only or max(numbers) > 0.0
 
     def unfiltered(self) -> Selection:
         """The same order, everything shown."""
@@ -64,8 +65,9 @@ class Selection:
         return (
             (mark is Mark.PINNED or not self.pinned_only)
             and (item.works or not self.works_only)
+            and (item.candidate.trim is None or not self.whole_only)
             and (mark is not Mark.REJECTED or self.show_rejected)
-            and score.iou_exact >= self.least_match
+            and item.candidate.match >= self.least_match
             and (not self.most_variation or score.evenness.area_cv <= self.most_variation)
             and item.feature_mm >= self.least_feature_mm
         )
@@ -103,7 +105,7 @@ def sorting_values(designs: Sequence[GalleryItem], selection: Selection) -> list
     """By what each design is sorted; smaller comes first."""
     order = selection.order
     if order is SortOrder.MATCH:
-        return [-one.candidate.score.iou_exact for one in designs]
+        return [-one.candidate.match for one in designs]
     if order is SortOrder.EVENNESS:
         return [one.candidate.score.evenness.area_cv for one in designs]
     if order is SortOrder.GAIN:

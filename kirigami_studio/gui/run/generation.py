@@ -39,6 +39,7 @@ from kirigami_studio.studio.designing import (
     KnownAsCut,
     ModelFound,
     RunReport,
+    StartChosen,
     generating,
     request_for,
 )
@@ -80,9 +81,8 @@ class Generation(QObject):
             self._start(lambda target: self.planner.alike(target, nearness))
 
     def cancel(self) -> None:
-        """Ask the run to stop; the document stays as it is."""
+        """Stop the run at once; the document stays as it is."""
         self.run.cancel()
-        self._session.set_status(tr("Stopping …"))
 
     def _start(self, plan_for: Callable[[Outline], RunPlan]) -> None:
         session = self._session
@@ -397,8 +397,10 @@ class DesignRun(QObject):
         self.started.emit(request.k)
 
     def cancel(self) -> None:
-        """Ask it to stop at its next candidate."""
-        self._job.cancel()
+        """Stop it at once: whatever it still loads or computes until its next report goes unheard."""
+        if self.running:
+            self._job.stop()
+            self._cancel()
 
     def abandon(self) -> None:
         """Stop it and ignore what it would still report."""
@@ -429,6 +431,10 @@ class DesignRun(QObject):
                     self._request = self._request.resolved(grid)
                 self._session.set_status(reason)
                 self.grid_chosen.emit()
+            case StartChosen(start, reason):
+                if self._request is not None:
+                    self._request = self._request.with_start(start)
+                self._session.set_status(reason)
             case Started():
                 self.progressed.emit(0, report.total, tr("Starting (0 of {total})", total=report.total))
             case Progress():
@@ -452,13 +458,22 @@ class DesignRun(QObject):
         self._sampled.setdefault(candidate.index, candidate.score.siou)
         self._latest[candidate.index] = candidate
         self._reports += 1
-        best = min(self._latest.values(), key=self._ranking.key).score
+        best = min(self._latest.values(), key=self._ranking.key)
         if candidate.origin is Origin.GUIDED:
             self._session.set_status(
                 tr(
                     "Fitted from the uniform sheet: match {match:.1f} % (best {best:.1f} %).",
                     match=100 * candidate.score.iou_exact,
-                    best=100 * best.iou_exact,
+                    best=100 * best.match,
+                )
+            )
+        elif candidate.origin is Origin.COVERED:
+            self._session.set_status(
+                tr(
+                    "Covers the shape: match {match:.1f} %, gives up {percent:.0f} % of the sheet (best {best:.1f} %).",
+                    match=100 * candidate.match,
+                    percent=100 * candidate.given_up,
+                    best=100 * best.match,
                 )
             )
         elif candidate.index >= self._asked:
@@ -466,7 +481,7 @@ class DesignRun(QObject):
                 tr(
                     "Search found a design: match {match:.1f} % (best {best:.1f} %).",
                     match=100 * candidate.score.iou_exact,
-                    best=100 * best.iou_exact,
+                    best=100 * best.match,
                 )
             )
         elif improved:
@@ -476,7 +491,7 @@ class DesignRun(QObject):
                     "Polished {polished} of {asked} (best {best:.1f} %)",
                     polished=polished,
                     asked=self._asked,
-                    best=100 * best.iou_exact,
+                    best=100 * best.match,
                 )
             )
 

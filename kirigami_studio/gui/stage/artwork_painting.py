@@ -101,7 +101,7 @@ def painting_artwork(
     from kirigami_studio.export.artwork_raster import BitmapFrame, paint
     from kirigami_studio.foundation.units import MM_PER_INCH
 
-    sheet = PrintedSheet.uncut(design, None if target is None else target.points, WIDTH_MM)
+    sheet = PrintedSheet.uncut(design, None if target is None else target.rings, WIDTH_MM)
     points = sheet.corners.reshape(-1, 2)
     low, high = points.min(axis=0), points.max(axis=0)
     dpi = SHOWN_SIDE / float((high - low).max()) * MM_PER_INCH

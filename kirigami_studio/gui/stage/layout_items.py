@@ -23,6 +23,7 @@ from kirigami_studio.gui.widgets.paths import (
     painter_on,
     paths_of_lines,
     paths_of_quads,
+    rings_path,
     round_pen,
 )
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
@@ -146,7 +147,7 @@ def paint_candidate(
     panels = transform.to_pixels(design.panels(nodes))
     paint_panels(painter, panels, turning_left(field.rows, field.columns), palette, trimmed)
     if target is not None:
-        paint_target_line(painter, transform.to_pixels(target.points), palette, width=1.4)
+        paint_target_line(painter, transform.rings_to_pixels(target.rings), palette, width=1.4)
 
 
 def paint_flat(painter: QPainter, rect: QRectF, design: PosedDesign, palette: Palette) -> None:
@@ -198,7 +199,7 @@ def paint_opened_pieces(
     transform = ViewTransform.fitting(bounds, rect, CARD_MARGIN)
     paint_pieces(painter, pieces, phi, transform, palette)
     if target is not None:
-        paint_target_line(painter, transform.to_pixels(target.points), palette, width=1.4)
+        paint_target_line(painter, transform.rings_to_pixels(target.rings), palette, width=1.4)
 
 
 def states_pixmap(
@@ -245,7 +246,7 @@ def states_pixmap(
     if target is not None:
         painter.setPen(round_pen(palette.target, 1.2))  # no halo: in so small a picture it would hide the rim's panels
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawPath(line_path(transform.to_pixels(target.points), closed=True))
+        painter.drawPath(rings_path(transform.rings_to_pixels(target.rings)))
     painter.end()
     return pixmap
 
@@ -269,6 +270,6 @@ def target_pixmap(
     pixmap = blank(size, ratio)
     painter = painter_on(pixmap)
     transform = ViewTransform.fitting(Bounds.of(target.points), QRectF(0, 0, size.width(), size.height()), margin)
-    paint_target_shape(painter, transform.to_pixels(target.points), palette, line)
+    paint_target_shape(painter, transform.rings_to_pixels(target.rings), palette, line)
     painter.end()
     return pixmap

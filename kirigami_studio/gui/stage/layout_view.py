@@ -397,7 +397,7 @@ class LayoutView(Canvas):
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         if self.design is None:
             if self._target is not None:
-                paint_target_shape(painter, transform.to_pixels(self._target.points), self.palette_)
+                paint_target_shape(painter, transform.rings_to_pixels(self._target.rings), self.palette_)
             return
         if self._pieces is not None:
             self._paint_pieces(painter, transform, self._pieces)
@@ -441,7 +441,7 @@ class LayoutView(Canvas):
         nearness = self._nearness
         if self._target is not None and Overlay.TARGET in self.overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))
-            paint_target_line(painter, transform.to_pixels(self._target.points), self.palette_)
+            paint_target_line(painter, transform.rings_to_pixels(self._target.rings), self.palette_)
             painter.setOpacity(1.0)
 
     def _painted_artwork(self, painter: QPainter) -> ShownArtwork | None:
@@ -586,7 +586,7 @@ class LayoutView(Canvas):
             painter.setOpacity(1.0)
         if Overlay.TARGET in self.overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))
-            paint_target_line(painter, transform.to_pixels(self._target.points), self.palette_)
+            paint_target_line(painter, transform.rings_to_pixels(self._target.rings), self.palette_)
             painter.setOpacity(1.0)
             self._paint_second(painter, transform)
 

@@ -9,7 +9,7 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import ShapeRings, as_rings
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.as_cut import AsCutState
 from kirigami_studio.gui.widgets.card import ElidedLabel
@@ -75,14 +75,14 @@ class EndButton(QAbstractButton):
         self.setObjectName(name)
         self.phi = math.pi  #: radians; the angle that it goes to
         self._side = side
-        self._outline: FloatArray | None = None
+        self._outline: ShapeRings = None
         self._texts: tuple[str, ...] = ("",)
         self._palette: Palette = LIGHT
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
 
-    def show_state(self, phi: float, outline: FloatArray, texts: tuple[str, ...], tip: str) -> None:
+    def show_state(self, phi: float, outline: ShapeRings, texts: tuple[str, ...], tip: str) -> None:
         """Show what there is at an angle (radians): an outline (P, 2), and what is known of it, longest text first."""
         self.phi, self._outline, self._texts = phi, outline, texts
         self.setToolTip(tip)
@@ -123,11 +123,11 @@ class EndButton(QAbstractButton):
         painter.end()
 
 
-def paint_end(painter: QPainter, box: QRectF, outline: FloatArray, sheet: bool, palette: Palette) -> None:
-    """Draw an outline (P, 2), y up, as large as fits: a sheet is blue, a target orange."""
-    transform = ViewTransform.fitting(Bounds.of(outline), box, 1.0)
+def paint_end(painter: QPainter, box: QRectF, outline: ShapeRings, sheet: bool, palette: Palette) -> None:
+    """Draw an outline (P, 2) with its holes, y up, as large as fits: a sheet is blue, a target orange."""
+    transform = ViewTransform.fitting(Bounds.of(as_rings(outline)[0]), box, 1.0)
     paint = paint_start_shape if sheet else paint_target_shape
-    paint(painter, transform.to_pixels(outline), palette, 1.4)
+    paint(painter, transform.rings_to_pixels(outline), palette, 1.4)
 
 
 #: A sheet that is meant for an angle (radians) below this is meant to close.

@@ -284,8 +284,8 @@ class StartView(TargetView):
         self.hollows = rings
         self.update()
 
-    def paint_outline(self, painter: QPainter, points: FloatArray) -> None:
-        paint_start_shape(painter, points, self.palette_)
+    def paint_outline(self, painter: QPainter, rings: tuple[FloatArray, ...]) -> None:
+        paint_start_shape(painter, rings, self.palette_)
 
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         super().paint_scene(painter, transform)

@@ -135,6 +135,9 @@ class PartPicker(QDialog):
         self.painted = QCheckBox(tr("&Strokes as painted"))
         self.painted.setToolTip(tr("Lines count with their width; otherwise only what they enclose counts."))
         self.stroke = self._width_field("strokeWidth", tr("Width of lines that have none"))
+        self.fill = QCheckBox(tr("Fill &holes"))
+        self.fill.setToolTip(tr("A sheet shows the shape without its holes; they can be opened again."))
+        self._fill_holes: bool | None = None
         self.size_ = QLabel()
         self.notes = label(wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Minimum)
@@ -162,7 +165,8 @@ class PartPicker(QDialog):
     def _lay_out(self) -> None:
         left = column((self.list, 1), row(self.all, self.largest, ...))
         join = label(tr("&Join by"), self.join, name="")
-        controls = row(join, self.join, self.bridge, 12, self.painted, self.stroke, ..., self.restart, spacing=8)
+        marks = (self.painted, self.stroke, self.fill)
+        controls = row(join, self.join, self.bridge, 12, *marks, ..., self.restart, spacing=8)
         right = column((self.view, 1), controls, self.size_, self.notes)
         middle = row(left, (right, 1), spacing=12)
         below = row(..., self.cancel, self.take)
@@ -180,6 +184,7 @@ class PartPicker(QDialog):
         self.largest.clicked.connect(self._choose_largest)
         self.join.currentIndexChanged.connect(self._remake)
         self.painted.toggled.connect(self._remake)
+        self.fill.clicked.connect(self._choose_fill)
         for field in (self.bridge, self.stroke):
             field.valueChanged.connect(self._remake)
         self.take.clicked.connect(self._on_accept)
@@ -201,6 +206,7 @@ class PartPicker(QDialog):
         with QSignalBlocker(self.join), QSignalBlocker(self.painted):
             self.join.choose(Join.BRIDGE)
             self.painted.setChecked(_as_painted(source))
+        self._fill_holes = None
         self.painted.setVisible(any(part.lines for part in source.parts))
         self._fill(frozenset(source.usual) if closed else frozenset(part.number for part in source.parts))
         self.view.show_drawing(read)
@@ -272,7 +278,8 @@ class PartPicker(QDialog):
     def merging(self) -> Merging:
         """How they are joined."""
         join = Join(self.join.currentData())
-        return Merging(join, self.bridge.value(), self._as_painted, self.stroke.value())
+        widths = {"bridge": self.bridge.value(), "stroke": self.stroke.value()}
+        return Merging(join, as_painted=self._as_painted, fill_holes=self._fill_holes, **widths)
 
     @property
     def _as_painted(self) -> bool:
@@ -343,6 +350,10 @@ class PartPicker(QDialog):
         """Whether the outline is made and all pictures are drawn."""
         return not self._job.busy and not self._pick.busy and not self._undrawn
 
+    def _choose_fill(self, on: bool) -> None:
+        self._fill_holes = on
+        self._remake()
+
     # the outline -----------------------------------------------------------------------------------------------------
 
     def _remake(self) -> None:
@@ -368,6 +379,7 @@ class PartPicker(QDialog):
         """There is no outline, and why."""
         self.result_ = None
         self.view.show_result(None)
+        self.fill.hide()
         self.take.setEnabled(False)
         self.size_.setText(tr("No outline"))
         self._say((sentence,), wrong=True)
@@ -376,6 +388,8 @@ class PartPicker(QDialog):
         assert self._read is not None
         self.result_ = found
         self.view.show_result(found)
+        self.fill.setVisible(bool(found.outline.holes or found.outline.filled_holes))
+        self.fill.setChecked(not found.outline.holes)
         unit = self._read.source.unit
         if found.outline.size is not None:
             self.size_.setText(tr(TAKE[self._purpose][1], size=_size(found.outline.size, unit)))
@@ -397,7 +411,11 @@ class PartPicker(QDialog):
         elif self.result_ is not None:
             source = self._read.source if self._read is not None else None
             usual = source is not None and self.chosen == frozenset(source.usual) and not self._strokes.taken
-            usual = usual and self._as_painted == (source is not None and source.choice.as_painted)
+            usual = (
+                usual
+                and self._fill_holes is None
+                and self._as_painted == (source is not None and source.choice.as_painted)
+            )
             self.accept()
             self.taken.emit(self.result_.outline, usual and self.merging.join not in HULLS)
 

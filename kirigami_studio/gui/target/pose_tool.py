@@ -77,6 +77,11 @@ class PoseTool(SketchTool):
         elif index not in drawing.chosen:
             self.context.select({index})
 
+    def double_click(self, pointer: PointerEvent) -> None:
+        made = self.context.drawing.without_hole_at(pointer.free)
+        if made is not None:
+            self.context.changed.emit(Change(tr("Fill hole"), lambda: made))
+
     def _select_in_field(self, start: PointerEvent, end: PointerEvent) -> None:
         if distance(start.pixel, end.pixel) >= LEAST_DRAG:
             low, high = np.minimum(start.free, end.free), np.maximum(start.free, end.free)
@@ -229,7 +234,7 @@ class PoseTool(SketchTool):
             paint_field(painter, self._field[0].pixel, self._field[1].pixel, palette)
         if self._proposal is not None:
             for index in self._proposal.chosen:
-                paint_proposal(painter, transform.to_pixels(self._proposal.objects[index].ring), palette)
+                paint_proposal(painter, transform.rings_to_pixels(self._proposal.objects[index].rings), palette)
             self._paint_reading(painter, transform, palette)
             return
         if not self.context.drawing.chosen:

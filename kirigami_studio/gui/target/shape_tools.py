@@ -292,11 +292,11 @@ class BoxTool(SketchTool):
             return
         box = BoundingBox.spanned(self._start.place, self._end.place, self._end.shift)
         try:
-            ring = self._shape(box).ring
+            rings = self._shape(box).rings
         except TargetError:  # too flat so far; said when the button is let go
             return
-        for part in (*self.context.mirror.all_images(ring), ring):
-            paint_proposal(painter, transform.to_pixels(part), palette)
+        for image in (*zip(*map(self.context.mirror.all_images, rings), strict=True), rings):
+            paint_proposal(painter, transform.rings_to_pixels(image), palette)
         paint_size(painter, self._end.pixel, box.size, palette)
 
 
@@ -311,8 +311,8 @@ def text_tool(context: SketchContext) -> BoxTool:
 
     def shape(box: BoundingBox) -> Placed:
         text = context.text.strip()
-        ring, notes = lettered(letters(text, context.family, context.bold, context.italic), box)
-        return Placed.from_ring(ring, text or TEXT, notes)
+        word, notes = lettered(letters(text, context.family, context.bold, context.italic), box)
+        return Placed.from_polygon(word, text or TEXT, notes)
 
     hint = mark("Type the text above, then drag a box for it. Letters are moved together into one piece.")
     return BoxTool(context, TEXT, shape, hint)

@@ -6,7 +6,7 @@ from functools import partial
 
 from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtGui import QMouseEvent
-from PySide6.QtWidgets import QSizePolicy, QSlider, QStyle, QStyleOptionSlider, QWidget
+from PySide6.QtWidgets import QCheckBox, QSizePolicy, QSlider, QStyle, QStyleOptionSlider, QWidget
 
 from kirigami_studio.evaluate.opened_size import OpenedSize
 from kirigami_studio.foundation.words import mark, tr, tr_n
@@ -24,8 +24,8 @@ from kirigami_studio.outlines.reach import reach_of, reach_texts
 from kirigami_studio.studio.targets import Picture
 
 OPENED_SIZE = mark("Size of the opened shape, mm; 3 in or 8.5 cm work too.")
-FOLLOWED = mark("The flat sheet is made as wide as it takes; a flat width can be typed under Fabrication instead.")
-TYPED_WIDTH = mark("This follows from the flat width that was typed; a size typed here takes its place.")
+FOLLOWED = mark("The flat width follows; it can be typed on the page Make instead.")
+TYPED_WIDTH = mark("It follows from the flat width that was typed on the page Make.")
 
 
 class OpenedSizeRow(QWidget):
@@ -148,11 +148,14 @@ class TargetPanel(Card):
             warning.setVisible(False)
         self.threshold, self.start, self.opened = ThresholdBar(), StartTile(), OpenedSizeRow()
         self.loose = LooseRow(self.view.context)
+        self.fill = QCheckBox()
+        self.fill.setObjectName("fillHoles")
+        self.fill.setToolTip(tr("A sheet shows the shape without its holes; they can be opened again."))
         self.body.addWidget(self.tools)
         self.body.addLayout(row(self.start, (self.view, 1), spacing=8), 1)
         self.body.addLayout(row((self.facts, 1), self.size_))
         warnings = (self.start_refusal, self.reach)
-        for part in (self.opened, *warnings, self.refine, self.threshold, self.notes, self.loose):
+        for part in (self.opened, *warnings, self.fill, self.refine, self.threshold, self.notes, self.loose):
             self.body.addWidget(part)
         self.view.context.selection_changed.connect(self._show_selection)
         self.buttons["edit"].clicked.connect(self.set_editing)
@@ -190,7 +193,7 @@ class TargetPanel(Card):
         self.buttons["edit"].setChecked(on)
         for part in (self.tools, self.refine):
             part.setVisible(on)
-        self.start.setVisible(not on)
+        self.buttons["edit"].setVisible(not on)  # Done leaves the board
         self.opened.fold(on)
         if on != self.editing:
             self.editing = on
@@ -237,6 +240,7 @@ class TargetPanel(Card):
         self.buttons["clearTarget"].setEnabled(outline is not None)
         self.facts.setVisible(outline is not None)
         self.size_.setVisible(outline is not None)
+        self._show_holes(outline)
         notes = outline.notes if outline is not None else ()
         self.notes.setText(notes[0] if len(notes) == 1 else "\n".join(f"• {note}" for note in notes[:3]))
         self.notes.setToolTip("\n".join(notes))
@@ -244,6 +248,14 @@ class TargetPanel(Card):
         if outline is not None:
             self.facts.setText(tr(outline.name))
             self.size_.setText(measured(outline if source is None or source.unit == "mm" else source))
+
+    def _show_holes(self, outline: Outline | None) -> None:
+        holes, filled = (0, 0) if outline is None else (len(outline.holes), len(outline.filled_holes))
+        self.fill.setVisible(holes + filled > 0)
+        with QSignalBlocker(self.fill):
+            self.fill.setChecked(holes == 0)
+        words = tr_n("{count} hole", "{count} holes", holes + filled)
+        self.fill.setText(tr("Fill &holes ({holes})", holes=words))
 
     def arrangements(self) -> frozenset[str]:
         """What can be done with the selected objects while the board is open."""

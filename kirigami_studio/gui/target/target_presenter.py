@@ -65,6 +65,7 @@ class TargetPresenter(QObject):
     def _connect_sources(self, pasting: PasteReader) -> None:
         panel, targeting = self._panel, self._targeting
         panel.buttons["clearTarget"].clicked.connect(targeting.clear)
+        panel.fill.toggled.connect(self._fill_holes)
         panel.view.drops.content_dropped.connect(pasting.take)
         panel.threshold.changed.connect(targeting.change_threshold)
         panel.threshold.automatic.clicked.connect(lambda: targeting.change_threshold(None))
@@ -93,6 +94,14 @@ class TargetPresenter(QObject):
         """Lay a contour at another threshold on its picture, which lies still meanwhile."""
         picture = self._targeting.tracer.picture_of(outline)
         return self._panel.view.on_picture(outline, None if picture is None else picture.traced)
+
+    def _fill_holes(self, on: bool) -> None:
+        """Fill the target's holes, or open them again."""
+        gesture, drawing = tr("Fill holes") if on else tr("Open holes"), self._panel.view.context.drawing
+        if self._session.document.drawing:
+            self.reshaping.take(Change(gesture, lambda: drawing.with_holes(on)))
+        else:
+            self._targeting.change_holes(on, gesture)
 
     def _take_guides(self, gesture: str) -> None:
         session = self._session

@@ -251,25 +251,25 @@ class TargetView(Canvas):
         if self.context.placed is not None:
             if self._editing and len(self.context.drawing.objects) > 1:
                 self._paint_objects(painter, transform)
-                paint_target_line(painter, transform.to_pixels(self.context.placed.ring), self.palette_)
+                paint_target_line(painter, transform.rings_to_pixels(self.context.placed.rings), self.palette_)
             else:
-                self.paint_outline(painter, transform.to_pixels(self.context.placed.ring))
+                self.paint_outline(painter, transform.rings_to_pixels(self.context.placed.rings))
             self._paint_reach(painter, transform, self.context.placed)
         if self._preview is not None:
-            paint_proposal(painter, transform.to_pixels(self._preview.ring), self.palette_)
+            paint_proposal(painter, transform.rings_to_pixels(self._preview.rings), self.palette_)
         if self._editing:
             paint_axes(painter, transform, self.context.mirror, QRectF(self.rect()), self.palette_)
         self.active.paint(painter, transform, self.palette_)
 
-    def paint_outline(self, painter: QPainter, points: FloatArray) -> None:
-        """Draw the outline on the board: (L, 2) pixels."""
+    def paint_outline(self, painter: QPainter, rings: tuple[FloatArray, ...]) -> None:
+        """Draw the outline and its holes on the board: (L, 2) pixels each."""
         paint = paint_target_shape if self.underlay is None else paint_target_line
-        paint(painter, points, self.palette_)
+        paint(painter, rings, self.palette_)
 
     def _paint_objects(self, painter: QPainter, transform: ViewTransform) -> None:
         drawing = self.context.drawing
         for index, each in enumerate(drawing.objects):
-            points = transform.to_pixels(each.ring)
+            points = transform.rings_to_pixels(each.rings)
             selected, loose = index in drawing.selected, index in self.context.loose
             filled = self.underlay is None  # the picture below is what one draws after
             paint_object(painter, points, self.palette_, selected=selected, loose=loose, filled=filled)
@@ -335,8 +335,6 @@ class TargetView(Canvas):
             Qt.Key.Key_Equal: closer,
             Qt.Key.Key_Minus: away,
             Qt.Key.Key_0: self.fit,
-            Qt.Key.Key_1: self.zoom_to_real_size,
-            Qt.Key.Key_2: self.zoom_to_selection,
         }
 
     def _pointer_event(self, event: QMouseEvent) -> PointerEvent:

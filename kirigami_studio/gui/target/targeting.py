@@ -356,6 +356,21 @@ class Targeting(QObject):
         if picture is not None:
             self.tracer.retrace(picture, threshold)
 
+    def change_holes(self, filled: bool, gesture: str) -> None:
+        """Fill the target's holes or open them, by a gesture as it follows the word Undo."""
+        target = self._session.document.target
+        if target is not None:
+            made = self._known_as(target, target.with_holes(filled))
+            self.reshape(edits.edit_target(self._session.document, made, gesture))
+
+    def _known_as(self, outline: Outline, made: Outline) -> Outline:
+        """The same outline with other holes open, of the same picture or drawing."""
+        if (picture := self.tracer.picture_of(outline)) is not None:
+            self.tracer.remember(made, picture)
+        if source := self.reader.drawing_of(outline):
+            self.reader.drawings[made] = source
+        return made
+
     def reshape(self, edit: Edit) -> None:
         """Take an edit of the target that was made by drawing."""
         self._replace(edit)
@@ -382,6 +397,9 @@ class Targeting(QObject):
             session.display.show()
 
     def _on_traced(self, outline: Outline) -> None:
+        before = self._session.document.target
+        if before is not None and (before.holes or before.filled_holes):  # filled or open as they were
+            outline = self._known_as(outline, outline.with_holes(not before.holes))
         edit = edits.edit_target(self._session.document, self.on_board(outline), tr("Change threshold"))
         self._apply(edit, self._run.abandon)
         self._session.set_status(tr("{count} points at this threshold.", count=len(outline.points)))

@@ -12,8 +12,8 @@ import numpy.typing as npt
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen, QPixmap
 
-from kirigami_studio.evaluate.posed_design import PosedDesign, polygons_of
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.evaluate.posed_design import PosedDesign, covered
+from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.legends import Chip
 from kirigami_studio.gui.widgets.paths import area_path, painter_on
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 #: Places on each boundary at which the distance is measured, beside its corners.
 STATIONS = 256
-#: What was cut off is snapped to this grid (world units) when it is taken from the sheet.
-GRID = 1e-9
 TINT_ALPHA = 64
 #: Horizontal distance of hatch lines, pixels.
 STRIPE_STEP = 8
@@ -48,24 +46,21 @@ class Mismatch:
     gap: BoundaryGap  #: how far the boundaries of target and sheet are from each other
 
 
-def mismatch(target: FloatArray, sheet: FloatArray, removed: Sequence[FloatArray] = ()) -> Mismatch:
+def mismatch(
+    target: ShapeRings, sheet: FloatArray, removed: Sequence[FloatArray] = (), voids: FloatArray | None = None
+) -> Mismatch:
     """Compare two closed polygons (L, 2) in world units; ``removed`` ones were cut off the sheet.
 
-    A sheet whose outline crosses itself is read as the area it covers.
+    A sheet whose outline crosses itself is read as the area it covers.  Its ``voids`` (V, 4, 2) count as covered, but
+    for those beside the target that a cut has opened.
     """
     import shapely  # 70 ms that the empty window need not pay
 
-    wanted = shapely.Polygon(target)
-    covered: BaseGeometry = shapely.Polygon(sheet)
-    if not covered.is_valid:
-        covered = shapely.make_valid(covered)
-    if removed:
-        off = shapely.union_all(polygons_of(removed), grid_size=GRID)
-        parts = shapely.get_parts(covered)  # of a sheet that touches itself lines may be left over
-        areas = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
-        covered = shapely.difference(areas, off, grid_size=GRID)
-    missing, extra = wanted.difference(covered), covered.difference(wanted)
-    gap = boundary_gap(wanted, covered)
+    outer, *holes = as_rings(target)
+    wanted = shapely.Polygon(outer, holes)
+    shown = covered(sheet, wanted, removed, voids)
+    missing, extra = wanted.difference(shown), shown.difference(wanted)
+    gap = boundary_gap(wanted, shown)
     return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area, wanted.area, gap)
 
 
@@ -77,7 +72,8 @@ def design_mismatch(design: PosedDesign, target: Outline, phi: float) -> Mismatc
 
 def mismatch_of_nodes(design: PosedDesign, target: Outline, phi: float, nodes: FloatArray) -> Mismatch:
     """Compare a design whose nodes (N, 2) are at other places than in its ideal motion."""
-    return mismatch(target.points, design.outline(nodes, phi), design.removed(nodes, phi))
+    voids = design.voids(nodes).reshape(-1, 4, 2)
+    return mismatch(target.rings, design.outline(nodes, phi), design.removed(nodes, phi), voids)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

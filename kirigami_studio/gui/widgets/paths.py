@@ -14,7 +14,7 @@ import numpy as np
 from PySide6.QtCore import QByteArray, QDataStream, QSize, Qt
 from PySide6.QtGui import QBrush, QColor, QGradient, QPaintDevice, QPainter, QPainterPath, QPen, QPixmap
 
-from kirigami_studio.foundation.arrays import FloatArray, IntArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray, ShapeRings, as_rings
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 
 if TYPE_CHECKING:
@@ -85,6 +85,14 @@ def line_path(points: FloatArray, closed: bool) -> QPainterPath:
             path.moveTo(x, y)
     if closed and len(points):
         path.closeSubpath()
+    return path
+
+
+def rings_path(rings: ShapeRings) -> QPainterPath:
+    """The outer ring of a shape (L, 2), pixels, with its holes left open."""
+    path = QPainterPath()  # odd and even by itself
+    for ring in as_rings(rings):
+        path.addPath(line_path(ring, closed=True))
     return path
 
 

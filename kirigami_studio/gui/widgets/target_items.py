@@ -9,10 +9,10 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, ShapeRings
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.mismatch_items import stripes
-from kirigami_studio.gui.widgets.paths import ink, line_path, round_pen
+from kirigami_studio.gui.widgets.paths import ink, line_path, rings_path, round_pen
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.outlines.mirroring import Axis, Mirror
@@ -23,26 +23,26 @@ DASHES = (3.5, 3.0)
 KNOB = 3.5
 
 
-def paint_target_shape(painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0) -> None:
-    """Fill the target: (L, 2) pixels."""
+def paint_target_shape(painter: QPainter, rings: ShapeRings, palette: Palette, width: float = 2.0) -> None:
+    """Fill the target, (L, 2) pixels, but for its holes."""
     ink(painter, round_pen(palette.target, width), fill=palette.target_fill)
-    painter.drawPath(line_path(points, closed=True))
+    painter.drawPath(rings_path(rings))
 
 
-def paint_start_shape(painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0) -> None:
+def paint_start_shape(painter: QPainter, rings: ShapeRings, palette: Palette, width: float = 2.0) -> None:
     """Fill what the sheet looks like while it is flat, in the sheet's colours: (L, 2) pixels."""
     ink(painter, round_pen(palette.panel_line, width), fill=palette.panel_odd)
-    painter.drawPath(line_path(points, closed=True))
+    painter.drawPath(rings_path(rings))
 
 
 def paint_target_line(
-    painter: QPainter, points: FloatArray, palette: Palette, width: float = 2.0, *, dashed: bool = False
+    painter: QPainter, rings: ShapeRings, palette: Palette, width: float = 2.0, *, dashed: bool = False
 ) -> None:
-    """Draw a target's outline with a halo, so that it reads on panels and on the empty canvas: (L, 2) pixels.
+    """Draw the lines of a target, (L, 2) pixels, with a halo: they read on panels and on the empty canvas.
 
     That of a second target is ``dashed``.
     """
-    path = line_path(points, closed=True)
+    path = rings_path(rings)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     halo = QColor(palette.canvas)
     halo.setAlpha(190)
@@ -88,10 +88,10 @@ def paint_pen_points(
         painter.drawEllipse(QPointF(x, y), radius, radius)
 
 
-def paint_proposal(painter: QPainter, points: FloatArray, palette: Palette) -> None:
+def paint_proposal(painter: QPainter, rings: ShapeRings, palette: Palette) -> None:
     """Draw a shape that would come when the button is let go: (L, 2) pixels."""
     ink(painter, round_pen(palette.accent, 2.0), fill=palette.accent, alpha=36)
-    painter.drawPath(line_path(points, closed=True))
+    painter.drawPath(rings_path(rings))
 
 
 def paint_field(painter: QPainter, one: QPointF, other: QPointF, palette: Palette) -> None:
@@ -101,15 +101,15 @@ def paint_field(painter: QPainter, one: QPointF, other: QPointF, palette: Palett
 
 
 def paint_object(
-    painter: QPainter, points: FloatArray, palette: Palette, *, selected: bool, loose: bool, filled: bool = True
+    painter: QPainter, rings: ShapeRings, palette: Palette, *, selected: bool, loose: bool, filled: bool = True
 ) -> None:
     """Draw one of several objects, (L, 2) pixels: its fill, and a thin line that tells its state."""
     colour = palette.warning if loose else palette.accent if selected else palette.muted
     ink(painter, round_pen(colour, 1.8 if selected or loose else 1.0), fill=palette.target_fill if filled else None)
-    painter.drawPath(line_path(points, closed=True))
+    painter.drawPath(rings_path(rings))
     if loose:
         painter.setBrush(QBrush(stripes(colour, True, painter.device().devicePixelRatioF())))
-        painter.drawPath(line_path(points, closed=True))
+        painter.drawPath(rings_path(rings))
 
 
 def paint_size(painter: QPainter, pointer: QPointF, size: tuple[float, float], palette: Palette) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 
 #: Spans below this (world units) are treated as this, so that a degenerate box still gets a finite scale.
 SMALLEST_SPAN = 1e-9
@@ -62,6 +62,10 @@ class ViewTransform:
         """Map world points (..., 2) to pixels."""
         pixels: FloatArray = points * (self.scale, -self.scale) + self.origin
         return pixels
+
+    def rings_to_pixels(self, rings: ShapeRings) -> tuple[FloatArray, ...]:
+        """Map the outer ring of a shape (L, 2), world, and its holes to pixels."""
+        return tuple(map(self.to_pixels, as_rings(rings)))
 
     def to_world(self, pixel: QPointF) -> tuple[float, float]:
         """Map one pixel position to the world."""

@@ -122,7 +122,7 @@ class RunStore:
 
 def target_key(target: Outline) -> str:
     """Short name of a target's polygon, so that runs of another target in the same place are other runs."""
-    return hashlib.sha256(np.round(target.points, 9).tobytes()).hexdigest()[:16]
+    return hashlib.sha256(b"".join(np.round(ring, 9).tobytes() for ring in target.rings)).hexdigest()[:16]
 
 
 def values_of(records: Sequence[Record], name: str) -> FloatArray:

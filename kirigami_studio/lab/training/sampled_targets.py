@@ -24,6 +24,7 @@ from kirigami_studio.generator.velocity import Code, Network, joined
 from kirigami_studio.lab.training.drawn_shapes import SMALLEST_COMPACTNESS, drawn_shape
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.editing import resampled
+from kirigami_studio.outlines.pieces import rings_of
 from kirigami_studio.outlines.trace import trace
 
 #: Points of drawn shapes, at equal arc length.
@@ -86,7 +87,7 @@ def _redrawn(polygon: FloatArray, size: int, angle: float) -> FloatArray:
     placed = polygon @ there
     frame = RasterFrame.around(placed, size)
     try:
-        ring, _ = trace(np.where(rasterise(placed, size), 0.5, -0.5))
+        ring = rings_of(trace(np.where(rasterise(placed, size), 0.5, -0.5))[0])[0]
     except TargetError:
         return polygon
     corner = np.array([frame.left + 0.5 * frame.pixel, frame.top - (size - 0.5) * frame.pixel])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
@@ -36,6 +37,22 @@ def test_that_one_shape_is_one_target_wherever_it_comes_from(tmp_path: Path) -> 
     for traced in (mask, mask.astype(np.uint8) * 255, mask.astype(float)):
         assert ks.load_target(traced).polygon.symmetric_difference(first.polygon).area < 0.05
     assert ks.load_target(L_SHAPE) == first and hash(ks.load_target(L_SHAPE)) == hash(first)
+
+
+def test_that_a_target_with_a_hole_has_it_in_region_mask_and_words_and_can_be_filled(tmp_path: Path) -> None:
+    ring = shapely.Point(0, 0).buffer(10) - shapely.Point(0, 0).buffer(4)
+    (tmp_path / "ring.json").write_text(
+        json.dumps({"rings": [list(ring.exterior.coords), list(ring.interiors[0].coords)]}), encoding="utf-8"
+    )
+    for source in (ring, tmp_path / "ring.json", ks.load_target(ring)):
+        target = ks.load_target(source)
+        assert target.polygon.area == pytest.approx(1.0) and target.region.area == pytest.approx(0.84)
+        assert len(target.holes) == 1 and repr(target).endswith("1 hole>")
+        mask = target.mask(200)
+        assert mask.sum() / 200**2 == pytest.approx(0.84 * math.pi / 4, rel=0.01) and not mask[100, 100]
+        filled = ks.load_target(source, fill_holes=True)
+        assert not filled.holes and filled.region.area == pytest.approx(1.0) and "filled" in filled.notes[-1]
+        assert ks.load_target(filled, fill_holes=False) == target != filled
 
 
 def test_that_targets_keep_names_and_tell_what_was_left_out() -> None:

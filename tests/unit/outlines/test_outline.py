@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from shapely.geometry import Polygon
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines.contour import MOST_VERTICES
-from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.outline import MOST_HOLES, Outline
 from tests.refusals import refused
 
 SQUARE = [[0, 0], [2, 0], [2, 2], [0, 2]]
@@ -158,3 +159,51 @@ def test_that_random_contours_are_either_outlines_or_refused() -> None:
             assert outline.polygon.is_valid
             assert abs(outline.polygon.area - 1) < 1e-9
     assert outcomes == {"refused", "repaired", "taken"}
+
+
+HOLE = [[0.5, 0.5], [1.0, 0.5], [1.0, 1.0], [0.5, 1.0]]
+
+
+@pytest.mark.parametrize("hole", [HOLE, HOLE[::-1]])
+def test_that_holes_are_cut_out_of_a_frame_of_unit_area(hole) -> None:
+    outline = Outline.from_points(SQUARE, holes=[hole])
+    assert Polygon(outline.points).area == pytest.approx(1.0)
+    assert outline.polygon.area == pytest.approx(1.0 - 1.0 / 16.0)
+    assert not Polygon(outline.holes[0]).exterior.is_ccw
+    assert outline.filled == Outline.from_points(SQUARE) != outline
+    with pytest.raises(ValueError, match="read-only"):
+        outline.holes[0][0, 0] = 3.0
+
+
+def test_that_holes_which_overlap_become_one_and_tiny_ones_are_filled() -> None:
+    shifted, tiny = np.array(HOLE) + 0.25, 0.01 * np.array(HOLE) + 1.5
+    outline = Outline.from_points(SQUARE, holes=[HOLE, shifted, tiny])
+    assert len(outline.holes) == 1
+    assert outline.polygon.area == pytest.approx(1.0 - (2 * 0.25 - 0.0625) / 4.0)
+    assert len(outline.notes) == 1
+
+
+def test_that_a_hole_across_the_rim_is_a_notch() -> None:
+    outline = Outline.from_points(SQUARE, holes=[np.array(HOLE) - [0.75, 0.0]])
+    assert not outline.holes
+    assert outline.size == (2.0, 2.0)
+    assert len(outline.points) == 8
+
+
+def test_that_a_hole_that_takes_all_is_refused() -> None:
+    with refused(TargetError, "contour.no_area"):
+        Outline.from_points(SQUARE, holes=[3.0 * np.array(SQUARE) - 1.0])
+
+
+def test_that_an_outline_of_too_many_holes_is_refused() -> None:
+    square = Outline.from_points(SQUARE).points
+    centres = np.linspace(-0.45, 0.45, MOST_HOLES + 1)
+    with refused(TargetError, "outline.too_many_holes"):
+        Outline(square, holes=tuple(0.004 * square + [at, 0.0] for at in centres))
+
+
+def test_that_holes_survive_pickling_and_tell_outlines_apart() -> None:
+    outline = Outline.from_points(SQUARE, holes=[HOLE])
+    copy = pickle.loads(pickle.dumps(outline))
+    assert copy == outline and hash(copy) == hash(outline)
+    assert copy != Outline.from_points(SQUARE, holes=[np.array(HOLE) + 0.1])

@@ -23,6 +23,9 @@ def rectangle(width: float, height: float) -> Outline:
     return Outline.from_points([[0, 0], [width, 0], [width, height], [0, height]])
 
 
+FRAME = Outline.from_points([[0, 0], [100, 0], [100, 100], [0, 100]], holes=[[[20, 20], [80, 20], [80, 80], [20, 80]]])
+
+
 def polygon_of(region: Polygon) -> Outline:
     """Expected outline of a shapely polygon given in SVG coordinates (y down)."""
     return Outline.from_points(np.asarray(region.exterior.coords) * (1, -1))
@@ -36,8 +39,8 @@ def polygon_of(region: Polygon) -> Outline:
         ('<circle cx="50" cy="50" r="40" fill="url(#gradient)"/>', DISC),
         ('<ellipse cx="50" cy="50" rx="40" ry="20" transform="scale(1 2)"/>', DISC),
         ('<path d="M10 50 A40 40 0 1 1 90 50 A40 40 0 1 1 10 50z"/>', DISC),
-        ('<path d="M10 10h100v100h-100z M30 30v60h60v-60z"/>', rectangle(1, 1)),
-        ('<path fill-rule="evenodd" d="M10 10h100v100h-100z M30 30h60v60h-60z"/>', rectangle(1, 1)),
+        ('<path d="M10 10h100v100h-100z M30 30v60h60v-60z"/>', FRAME),
+        ('<path fill-rule="evenodd" d="M10 10h100v100h-100z M30 30h60v60h-60z"/>', FRAME),
         ('<polygon points="0,0 60,0 60,30 0,30"/>', rectangle(2, 1)),
         ('<polyline points="0,0 60,0 60,30 0,30" style="fill:#333"/>', rectangle(2, 1)),
         ('<path fill="none" stroke="red" d="M0 0H60V30H0Z"/>', rectangle(2, 1)),
@@ -115,7 +118,7 @@ def test_that_the_size_follows_the_stated_units(attributes, size, unit, svg) -> 
 @pytest.mark.parametrize(
     ("body", "word"),
     [
-        ('<path d="M0 0h50v50h-50z M10 10v30h30v-30z"/>', "Holes were filled (36 % of the area)"),
+        ('<path d="M0 0h50v50h-50z M3 3v44h44v-44z"/>', "Holes were filled (77 % of the area)"),
         ('<circle r="30"/><circle cx="90" r="10"/>', "1 smaller piece was left out (10 % of the area)"),
         ('<path fill="none" stroke="red" d="M0 0h50v50h-50v-49.5"/>', "A gap was closed: 0.5 px near (0, 0.25)"),
         ('<path d="M0 0h50v50h-50v-40"/>', "closed by a straight line"),
@@ -123,7 +126,10 @@ def test_that_the_size_follows_the_stated_units(attributes, size, unit, svg) -> 
         ('<image href="a.png" width="5" height="5"/><circle r="30"/>', "embedded picture"),
         ('<path d="M0 0L100 0L100 100L50 100L51 101L50 102L51 99L0 100z"/>', "at 2 places, the first near (50.6"),
         ('<circle r="30"/><rect width="90" height="5" fill="none" stroke="red"/>', "without filling"),
-        ('<circle r="30" clip-path="circle(9px)"/>', "Clip paths"),
+        ('<circle r="30" clip-path="path(\'M0 0H9V9z\')"/>', "Clip paths"),
+        ('<circle r="30" clip-path="circle(calc(9px))"/>', "Clip paths"),
+        ('<filter id="f"><feGaussianBlur stdDeviation="3"/></filter><circle r="30" filter="url(#f)"/>', "Filters"),
+        ('<circle r="30" style="filter:drop-shadow(3px 3px 2px red)"/>', "Filters"),
     ],
 )  # fmt: skip
 def test_that_what_was_changed_is_said(body, word, svg) -> None:

@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Family
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget
 from kirigami_studio.evaluate.siou import ShapeMatch
+from kirigami_studio.evaluate.trimming import trim
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -19,9 +20,11 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.pipeline.rank import (
     EVENNESS,
+    GIVEN_UP,
     JAMMING,
     MOST_LOST,
     SYMMETRY,
+    TURN_SHARE,
     USUAL,
     WORTH,
     Ranking,
@@ -96,15 +99,57 @@ def test_that_thin_panels_and_ratios_at_limits_cost_match(design: Candidate, wor
     assert Ranking(0.5).ranked([bad, good]) == (good, bad) and Ranking(0.0).ranked([bad, good]) == (bad, good)
 
 
-def test_that_a_symmetric_sheet_wins_up_to_its_price(design: Candidate) -> None:
-    z = RatioField.from_log10(Symmetry.HALF_TURN.symmetric(design.sheet.field.log10))
-    symmetric = replace(with_figures(design, 0.98), sheet=Sheet(z))
-    assert symmetric.symmetry is Symmetry.HALF_TURN and design.symmetry is None
+def with_symmetry(design: Candidate, symmetry: Symmetry, iou: float) -> Candidate:
+    field = RatioField.from_log10(0.05 * np.random.default_rng(2).normal(size=(4, 5)))
+    z = symmetry.symmetric((design.sheet.field if symmetry.fits(4, 4) else field).log10)
+    made = replace(with_figures(design, iou), sheet=Sheet(RatioField.from_log10(z)))
+    assert made.symmetry is symmetry and design.symmetry is None
+    return made
+
+
+@pytest.mark.parametrize(
+    ("symmetry", "iou", "price"),
+    [
+        (Symmetry.LEFT_RIGHT, 0.98, SYMMETRY),
+        (Symmetry.HALF_TURN, 0.98, TURN_SHARE * SYMMETRY),
+        (Symmetry.LEFT_RIGHT, 0.955, 0.2 * SYMMETRY),  # what it misses is seen first
+    ],
+)
+def test_that_a_symmetric_sheet_wins_up_to_what_is_seen_of_it(
+    design: Candidate, symmetry: Symmetry, iou: float, price: float
+) -> None:
+    symmetric = with_symmetry(design, symmetry, iou)
     for lead, first in ((0.9, symmetric), (1.1, None)):
-        free = with_figures(design, 0.98 + lead * SYMMETRY, index=1)
+        free = with_figures(design, iou + lead * price, index=1)
         assert USUAL.ranked([free, symmetric])[0] == (first or free)
-    equal = with_figures(design, 0.98, index=-1)
+    equal = with_figures(design, iou, index=-1)
     assert Ranking(0.0).ranked([equal, symmetric])[0] == symmetric
+
+
+def test_that_a_symmetric_sheet_at_095_comes_behind_a_free_one_at_097(design: Candidate) -> None:
+    symmetric, free = with_symmetry(design, Symmetry.LEFT_RIGHT, 0.95), with_figures(design, 0.97, index=1)
+    assert USUAL.ranked([symmetric, free])[0] == free
+
+
+def with_cover(design: Candidate, iou: float, removed: float, index: int = 1) -> Candidate:
+    made = trim(deploy(design.sheet), silhouettes.load("heart"), 0.0, design.score.transform)
+    return replace(with_figures(design, 0.8, index), trim=replace(made, iou=iou, removed_share=removed))
+
+
+def test_that_one_price_ranks_whole_sheets_and_covers_and_follows_the_slider(design: Candidate) -> None:
+    whole, cover = with_figures(design, 0.98), with_cover(design, 0.99, 0.11)
+    assert (whole.family, cover.family, cover.match, cover.given_up) == (Family.CLOSED, Family.COVER, 0.99, 0.11)
+    assert USUAL.prices(cover)["rank.gives_up"] == pytest.approx(0.11 * GIVEN_UP)
+    assert Ranking(0.0).ranked([whole, cover]) == (cover, whole)
+    assert USUAL.ranked([cover, whole]) == (whole, cover)  # 0.011 for 0.01
+    assert USUAL.ranked([whole, with_cover(design, 0.99, 0.09)])[1] == whole
+    asked = replace(Ranking(0.5), trimmed_first=True)
+    assert asked.ranked([whole, cover]) == (cover, whole)
+
+
+def test_that_reasons_name_what_is_given_up(design: Candidate) -> None:
+    whole, cover = with_figures(design, 0.98), with_cover(design, 0.985, 0.3)
+    assert [note.code for note in USUAL.reasons([whole, cover])][1] == "rank.gives_up"
 
 
 def test_that_what_can_be_cut_comes_first(design: Candidate) -> None:

@@ -82,8 +82,8 @@ def test_that_notches_are_filled_only_where_no_closed_sheet_shows_them(keyhole: 
 
 def test_that_a_design_is_cut_deep_again_wherever_it_is_trimmed(design: Candidate, keyhole: Outline) -> None:
     assert design.trim is not None
-    again = trimmed(replace(design, trim=None), keyhole, design.trim.keep, lambda: False).candidate
-    assert again.trim == design.trim
+    again = trimmed(replace(design, trim=None), keyhole, design.trim.keep, lambda: False).candidate.trim
+    assert again is not None and again.deep and again.given_up and again.iou > design.trim.iou - 0.01
 
 
 def test_that_its_cuts_leave_one_piece_and_every_other_connector(design: Candidate, plan: CutPlan) -> None:

@@ -108,6 +108,16 @@ def test_that_a_trimmed_design_comes_back_with_what_was_cut_off(pentagon: Outlin
     assert any(part is not None for part in cut.kept)
 
 
+def test_that_the_holes_of_a_target_come_back_and_files_without_stay_as_they_were(tmp_path: Path) -> None:
+    square = [[0, 0], [4, 0], [4, 4], [0, 4]]
+    framed = Outline.from_points(square, holes=[[[1, 1], [2, 1], [2, 3]], [[2.5, 1], [3, 1], [3, 3]]])
+    for target in (framed, framed.filled):
+        store.save(Document(target=target), tmp_path / "frame.kiri")
+        assert store.load(tmp_path / "frame.kiri").target == target
+        named = any(b'"holes"' in content for content in members_of(Document(target=target)).values())
+        assert named == bool(target.holes)
+
+
 @pytest.mark.parametrize("start", [False, True])
 def test_that_rim_start_outline_and_cell_come_back(pentagon: Outline, tmp_path: Path, start: bool) -> None:
     sheet = uneven_sheet(4, 5, seed=2, start=start)

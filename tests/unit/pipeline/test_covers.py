@@ -1,0 +1,107 @@
+"""Designs that cover the target: made in the same run where no closed sheet shows it, told, and fitted again."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+from shapely.geometry import Polygon
+
+from kirigami_studio.cli.design import candidates_json, summary
+from kirigami_studio.evaluate.candidate import Candidate, Family, Origin
+from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.outlines.starts import no_closed_sheet_shows
+from kirigami_studio.outlines.turning import sides_needed
+from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.fit_again import fit_again
+from kirigami_studio.pipeline.redesign import refitted
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import best_of, needs_cover
+from kirigami_studio.pipeline.variety import look_alikes
+from kirigami_studio.studio.designing import first_of_families, why_covered
+
+
+@pytest.fixture(scope="module")
+def keyhole() -> Outline:
+    """A square with an undercut slot, which no closed sheet shows."""
+    points = [(-5, -5), (5, -5), (5, 5), (0.8, 5), (1.8, -1), (-1.8, -1), (-0.8, 5), (-5, 5)]
+    return Outline.from_points(points, "keyhole")
+
+
+@pytest.fixture(scope="module")
+def run(keyhole: Outline) -> Result:
+    return best_of(Request(keyhole, (8, 8), k=4, polish=3))
+
+
+@pytest.fixture(scope="module")
+def cover(run: Result) -> Candidate:
+    return next(one for one in run.candidates if one.family is Family.COVER)
+
+
+def test_that_a_shape_that_turns_back_far_has_two_families_in_one_run(run: Result, cover: Candidate) -> None:
+    closed = [one for one in run.candidates if one.family is Family.CLOSED]
+    assert len(closed) == run.request.k and len(run.candidates) > run.request.k
+    assert cover.trim is not None and cover.trim.deep and cover.trim.given_up and cover.score.feasible
+    assert cover.match > max(one.match for one in closed) + 0.05
+    assert cover.origin is Origin.COVERED and 0.0 < cover.given_up < 0.4
+    assert sorted(one.index for one in run.candidates) == list(range(len(run.candidates)))
+    groups = look_alikes(run.candidates, run.ranking)
+    families = dict(zip(groups, (one.family for one in run.candidates), strict=True))
+    assert all(families[group] is one.family for group, one in zip(groups, run.candidates, strict=True))
+
+
+def test_that_a_cover_is_scored_as_the_sheet_that_is_cut(cover: Candidate) -> None:
+    assert cover.trim is not None and cover.sheet == cover.trim.sheet == cover.final_sheet
+
+
+@pytest.mark.parametrize("change", [{"guided": 0}, {"covers": False}, {"least_gap_mm": 9.0}, {"k": 3}])
+def test_that_no_covers_are_made_where_none_are_due(keyhole: Outline, change: dict[str, float], run: Result) -> None:
+    assert needs_cover(run.request, run.candidates)
+    assert not needs_cover(replace(run.request, **change), run.candidates)
+
+
+def test_that_a_shape_that_closed_sheets_show_has_none(run: Result) -> None:
+    request, well = replace(run.request, target=load("heart"), polish=15), run.candidates[-1]
+    assert not needs_cover(request, [replace(well, score=replace(well.score, feasible=True, iou_exact=0.971))])
+    badly = [replace(well, score=replace(well.score, feasible=True, iou_exact=0.969))]
+    assert needs_cover(request, badly) and not needs_cover(replace(request, polish=5), badly)
+
+
+@pytest.mark.parametrize(("name", "sides"), [("heart", 2), ("cross", 4), ("clover", 4), ("gear", 5), ("puzzle", 7)])
+def test_that_every_arm_with_parallel_flanks_needs_a_side_of_its_own(name: str, sides: int) -> None:
+    assert sides_needed(load(name)) == sides
+    assert no_closed_sheet_shows(load(name)) is (sides > 4)
+
+
+def test_that_it_is_told_why_and_what_each_family_shows(run: Result, cover: Candidate, keyhole: Outline) -> None:
+    why = why_covered(run.candidates, keyhole)
+    assert why is not None and why.code == "covers.turns_back"
+    assert why.fields["cover"] == pytest.approx(100 * cover.match, abs=2.0)
+    assert 40.0 < float(str(why.fields["across"])) < 60.0 < float(str(why.fields["closed"])) < 97.0
+    assert why_covered([one for one in run.candidates if one.trim is None], keyhole) is None
+    (place, first) = first_of_families(run.candidates)[Family.COVER]
+    assert run.candidates[place] == first == cover
+
+
+def test_that_outlines_of_both_families_have_the_match_that_is_told(run: Result, keyhole: Outline) -> None:
+    answer = json.loads(json.dumps(summary(run, Construction.ONE_SHEET)))
+    assert set(answer["families"]) == {"closed", "cover"} and answer["why_covered"]["code"] == "covers.turns_back"
+    for entry in candidates_json(run, Construction.ONE_SHEET):
+        outer, *holes = entry["outline"]  # type: ignore[misc]
+        shown = Polygon(outer, holes)
+        iou = shown.intersection(keyhole.polygon).area / shown.union(keyhole.polygon).area
+        told = entry["trimmed_iou"] if entry["family"] == "cover" else entry["iou_exact"]
+        assert iou == pytest.approx(told, abs=2e-4)
+
+
+def test_that_a_cover_is_fitted_again_as_a_cover(run: Result, cover: Candidate, keyhole: Outline) -> None:
+    again = refitted(cover, keyhole, run.request.prefer, (), lambda: 0.15, lambda: False, free_rim=True).candidate
+    assert again.origin is Origin.COVERED and again.match > cover.match - 0.02
+    assert again.trim is not None and again.trim.given_up
+    reports = list(fit_again(replace(run.request, regular=1.0), [cover], lambda: False))
+    assert reports[-1].done == 1
+    for report in reports:
+        assert report.after is None or report.after.score.evenness.area_cv < cover.score.evenness.area_cv
