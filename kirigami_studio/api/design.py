@@ -545,7 +545,7 @@ class Design:
 
     @property
     def _small_pieces(self) -> PosedPieces | None:
-        """Its pieces on pins, or its tiles on cloth, as small pictures show them; None for panels."""
+        """Its pieces on pins, or its tiles on cloth, for pictures; None for panels."""
         if not has_pieces(self.document.fabrication):
             return None
         try:

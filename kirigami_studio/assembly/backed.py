@@ -171,7 +171,7 @@ class BackedSheet:
         return 2.0 * self.tile_sizes.inset_mm(self.plan.kerf_mm)
 
     def board(self, jig: Jig, assembly: Assembly | None = None) -> Board:
-        """Lay tiles, as they are or as pieces of another assembly, into a frame with registration holes.
+        """Lay tiles, or pieces in their place, into a frame with registration holes.
 
         The opening of the frame is the sheet's outline, a gap larger.  Of four holes, one in each corner, one is out of
         line, so that board and hinge layer fit one way only.

@@ -208,9 +208,9 @@ def discs(centres: ComplexArray, radius: FloatArray | float) -> GeometryArray:
 
 
 def _corners(radius: float, tolerance: float) -> ComplexArray:
-    """Corners (N,) on the unit circle; sides of as many miss a circle of this radius by the tolerance at most."""
+    """Corners (N,) on the unit circle, as many as a radius and a tolerance ask for."""
     count = 4 * max(4, math.ceil(0.25 * math.pi * math.sqrt(radius / (2.0 * tolerance))))
-    return np.exp(2j * math.pi * np.arange(count) / count)
+    return np.asarray(np.exp(2j * math.pi * np.arange(count) / count))
 
 
 def swept_discs(
@@ -257,7 +257,7 @@ def swept_discs(
 def swept_hulls(
     corners: ComplexArray, drifts: ComplexArray, turn: float, tolerance: float, windows: FloatArray
 ) -> GeometryArray:
-    """Convex areas that convex polygons sweep along arcs, as far as they come near one of some windows.
+    """Convex areas that convex polygons sweep along arcs near some windows.
 
     Grown by ``tolerance`` they contain the exact ones.
 
@@ -282,14 +282,16 @@ def swept_hulls(
         for count in np.unique(steps)
     ]
     # Hulls of lines, which are quicker to make than multipoints.
-    lines = shapely.linestrings(as_points(np.concatenate(both))) if both else []
+    if not both:
+        return np.empty(0, dtype=object)
+    lines = shapely.linestrings(as_points(np.concatenate(both)))
     return np.asarray(shapely.convex_hull(lines), dtype=object).reshape(-1)
 
 
 def _steps_near(
     corners: ComplexArray, drifts: ComplexArray, turn: float, steps: int, windows: FloatArray
 ) -> ComplexArray:
-    """Corners (N, 2 K) of polygons before and after those of so many steps that come near windows."""
+    """Corners (N, 2 K) of polygons before and after steps that come near windows."""
     shifts = (np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0)[:, None] * drifts[:, None, :]
     near = np.ones((len(windows), len(corners), steps), dtype=bool)
     for axis, (corner, shift) in enumerate(((corners.real, shifts.real), (corners.imag, shifts.imag))):

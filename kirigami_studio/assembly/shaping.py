@@ -380,7 +380,7 @@ class Shaping:
         return None
 
     def _tidied(self, shape: BaseGeometry) -> Polygon:
-        """The largest part, without needless vertices, and without holes too small for an ear."""
+        """The largest part, without needless vertices and holes too small for an ear."""
         return _tidy(_largest(shape), 0.25 * math.pi * self.options.ear_mm**2)
 
     def _held_narrowly(self, index: int, shape: BaseGeometry) -> Polygon:
@@ -393,7 +393,7 @@ class Shaping:
         return _largest(shape)
 
     def with_more(self, index: int, room: BaseGeometry) -> tuple[Polygon, BaseGeometry] | None:
-        """Body of a piece with all of an area that hangs on to it by a neck, and that part of the area; or None."""
+        """Body of a piece with what of an area hangs on to it by a neck, and that; or None."""
         body: Polygon = self.bodies[index]
         both = united(body, room)
         if (wide := self._between_necks(index, both)) is None:

@@ -1,4 +1,4 @@
-"""Places that hold one sheet open, or flat, as marks that are engraved on it: nothing is cut for them.
+"""Places that hold one sheet open, or flat, as marks that are engraved on it.
 
 Two marks with one number meet in their state.  They keep off cuts and connectors as an engraved name does.
 """
@@ -40,7 +40,7 @@ DONE_BY: Mapping[HoldKind, str] = {
 
 
 def with_marks(plan: CutPlan, design: Deployment, phi: float, options: HoldOptions) -> CutPlan:
-    """The plan of one sheet with marks where parts of it are held together, and a note on them.
+    """Mark on the plan of one sheet where parts of it are held together.
 
     Parameters
     ----------

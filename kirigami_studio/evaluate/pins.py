@@ -248,7 +248,7 @@ def _closed_places(number: int, panels: list[list[int]], owners: dict[int, list[
 
 @dataclass(frozen=True, slots=True)
 class RoomBound:
-    """Least distance of pins, and least necks beside notches, that changes of a sheet keep; unit cells."""
+    """Least distance of pins and least necks that changes keep, unit cells."""
 
     pins: float
     necks: float
@@ -264,7 +264,7 @@ class RoomBound:
 
 
 def kept_apart(before: Sheet, wanted: Sheet, least: float) -> Sheet:
-    """Go from one sheet towards another as far as pins keep apart, and necks beside notches wide, on the way.
+    """Go from one sheet towards another as far as pins and necks keep their room.
 
     Parameters
     ----------

@@ -508,7 +508,7 @@ def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
 
 
 def _write_solids(job: AssemblyJob, fresh: Path) -> None:
-    """Write board, arms and handle, as they lie on their beds side by side, as thick as the sheet: to be printed."""
+    """Write board, arms and handle as solids, as they lie on their beds."""
     from kirigami_studio.assembly.printed import extruded
     from kirigami_studio.assembly.solids import at_origin
     from kirigami_studio.export.meshes import write_plate  # with libraries that few need

@@ -449,7 +449,7 @@ def _first_page(canvas: Any, sheet: AssemblySheet, page: Size) -> None:
 def _draw_grips(
     canvas: Any, assembly: Assembly, grips: tuple[str, str], flat: _Drawing, scale: float, corner: FloatArray
 ) -> None:
-    """A disc on the piece to hold, and an arrow from the piece to pull the way that it goes first, seen from that."""
+    """Mark the piece to hold, and the way that the piece to pull goes first."""
     names = list(assembly.by_id)
     here, ahead = (assembly.poses(phi)[[names.index(name) for name in grips], :2] for phi in (math.pi, AHEAD))
     shapes = [next(one for one in flat.shapes if one.number == name) for name in grips]
@@ -572,7 +572,7 @@ def _page_of_drive(canvas: Any, drive: DriveParts, page: Size) -> None:
 
 
 def _of_drive(drawing: _Drawing) -> _Drawing:
-    """The picture of a drive with the board's name in its corner, and without that of the handle behind an arm."""
+    """A drive with the board's name at its foot, and none on the handle behind an arm."""
     shapes = []
     for shape in drawing.shapes:
         if shape.number == BOARD:

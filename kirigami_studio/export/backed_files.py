@@ -89,7 +89,7 @@ class Glued:
 
     @cached_property
     def through(self) -> tuple[RoundHole, ...]:
-        """Holes of places that go through both layers, in the frame of the plan: for thread and eyelets."""
+        """Holes for thread and eyelets through both layers, in the frame of the plan."""
         numbers = {piece.id: number for number, piece in enumerate(self.board.pieces)}
         origins = self.board.places - self.board.layer_at
         return tuple(
@@ -101,7 +101,7 @@ class Glued:
         )
 
     def holes(self, profile: Profile) -> tuple[Stroke, ...]:
-        """Registration holes round the sheet, then those through both layers, as the beam goes.
+        """Holes round the sheet, then those through both layers, as the beam goes.
 
         In the frame of the sheet's strokes.
         """

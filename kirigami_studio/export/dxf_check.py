@@ -311,7 +311,7 @@ def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> 
 
 
 def _without_registration(content: DxfContent, problems: list[Problem]) -> DxfContent:
-    """The sheet of a file with so many holes round it and in it; files for single layers stay."""
+    """The sheet of a file without holes round it and through it."""
     promised = content.facts.get(AROUND)
     if promised is None or "PART" in content.facts:
         return content

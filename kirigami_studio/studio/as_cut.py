@@ -391,7 +391,7 @@ def estimate(
 
 
 def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tuple[int, int]:
-    """Panels of a pinned sheet, row by row, to hold and to pull: where its softest motions are largest.
+    """Panels to hold and to pull: where the softest motions of a pinned sheet are largest.
 
     Pins bend nothing and leave one motion, so that one of each is enough.
 

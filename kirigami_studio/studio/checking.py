@@ -191,7 +191,7 @@ def _is_backed(report: FileReport) -> bool:
 
 
 def _checked_backed(reports: Sequence[FileReport], document: Document) -> tuple[Checked, ...]:
-    """Compare the files of tiles and hinge layer with both layers of their design, and judge them together."""
+    """Compare files of tiles and hinge layer with their design, and judge it."""
     from kirigami_studio.export.assembly_files import read_bed, read_hinge_layer
     from kirigami_studio.export.pieces_read import KnownOutlines
 
@@ -219,7 +219,7 @@ def _checked_backed(reports: Sequence[FileReport], document: Document) -> tuple[
 
 
 def _request_of_layers(reports: Sequence[FileReport], document: Document) -> tuple[CutRequest, tuple[Problem, ...]]:
-    """Design of the layers of a backed sheet, made as their records say, and a problem where the project lacks it."""
+    """Design of the layers of a backed sheet; a problem where the project lacks it."""
     saved = document.fabrication
     hinge = next((report.record for report in reports if report.record is not None), None)
     board = next((report.of_pieces for report in reports if report.of_pieces is not None), None)

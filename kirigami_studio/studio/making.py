@@ -448,7 +448,7 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdi
 
 
 def posed_pieces(request: CutRequest) -> PosedPieces | None:
-    """The pieces of a design over its target, or its tiles on cloth; None for one that is not made of pieces.
+    """The pieces of a design over its target, or its tiles on cloth; None for panels.
 
     Raises
     ------
