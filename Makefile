@@ -111,7 +111,7 @@ test-durations: setup
 #: Damaged files for every reader, until INPUTS are read: make fuzz INPUTS=20000 SEED=7
 INPUTS ?= 1000
 SEED ?= 0
-#: READERS="svg dxf" for some of them; JOBS processes at a time.  A stopped run goes on where it was.
+#: READERS="target-svg target-dxf target-pdf target-picture" for those of targets by kind; JOBS processes at a time.  A stopped run goes on where it was.
 READERS ?=
 JOBS ?= 2
 fuzz: setup

@@ -46,7 +46,10 @@ USUAL_SIZE, SELDOM = 2000, 0.2
 
 
 def sources(reader: str) -> list[tuple[bytes, float]]:
-    """What the files of a reader are made from, with how often each is chosen: small ones more often."""
+    """What the files of a reader are made from, with how often each is chosen: small ones more often.
+
+    ``data/readers`` has small files of kinds that nothing else holds: regions, clipped blocks, layers that are off.
+    """
     from attacked_readers import ALL
 
     places = (TESTS / "data", RESOURCES / "examples", RESOURCES / "silhouettes", RESOURCES / "materials")

@@ -375,7 +375,8 @@ class Shaping:
         half = 0.5 * float(self.neck_mm[index])
         for core in shapely.get_parts(shapely.buffer(shape, -half)):
             if np.all(shapely.contains(core, centres)):
-                return shapely.buffer(core, half + CLEAR, join_style="mitre", mitre_limit=MITRE)
+                wide: BaseGeometry = shapely.buffer(core, half + CLEAR, join_style="mitre", mitre_limit=MITRE)
+                return wide
         return None
 
     def _tidied(self, shape: BaseGeometry) -> Polygon:

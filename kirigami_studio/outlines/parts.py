@@ -52,6 +52,8 @@ WORTH_ASKING = 0.02
 BROAD, MIDDLING, SEEN = 0.05, 0.015, 0.005
 #: This share of a silhouette is more; lines run round filled shapes that fill this share of what they enclose.
 SHOWS_MORE, ROUND_FILLED = 0.02, 0.5
+#: Lines that hang on a shape and are so many times as long as it may be meant, too.
+REACHES_OUT = 1.5
 #: An area counts as larger from this share on: less is rounding.
 LARGER = 1e-6
 #: A rectangle of lines whose edges are nearer to the paper's than this share of the paper is its frame.
@@ -375,7 +377,7 @@ def _usual(source: SourceParts) -> UsualChoice:
         return UsualChoice((number,), (number,), False, False, open_at or opening(_all_lines(lines), size), len(lines))
     silhouette = Polygon(enclosed(united([kinds[part.number] for part in taken], size))[0])
     outer = _outer(taken, kinds)
-    others = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
+    others: list[BaseGeometry] = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
     others += [part.region for part in faint]
     considered = tuple(number for number in kinds if takes_rings or not _is_letter_apart(source, number, taken))
     closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
@@ -390,6 +392,7 @@ def _usual(source: SourceParts) -> UsualChoice:
         and bool(closed)
         and (is_round or not shown)
         and not _stands_apart(closed, {**solid, **ring}, size)
+        and not _reaches_out(taken, silhouette)
         and not _is_framed(_outer(closed, {**solid, **ring}), closed)
         and all(_outside(one, silhouette) <= SHOWS_MORE * silhouette.area for one in others)
     )
@@ -575,6 +578,16 @@ def _stands_apart(closed: Sequence[Part], regions: Mapping[int, BaseGeometry], s
     largest = max(regions[part.number].area for part in outer)
     usable = [part for part in outer if regions[part.number].area >= SPECK * largest]
     return len(_groups(usable, [regions[part.number] for part in usable], size)) > 1
+
+
+def _reaches_out(taken: Sequence[Part], silhouette: Polygon) -> bool:
+    """Whether lines that hang on the shape and enclose nothing are much longer than it."""
+    lines = _all_lines(part for part in taken if part.kind is DrawnPartKind.CLOSED)
+    if not lines:
+        return False
+    left, bottom, right, top = silhouette.bounds
+    longest = float(np.max(np.ptp(np.concatenate(lines), axis=0)))
+    return longest > REACHES_OUT * max(right - left, top - bottom)
 
 
 def _is_framed(outer: Sequence[Part], closed: Sequence[Part]) -> bool:

@@ -340,7 +340,7 @@ class _Painter:
         chains = self._chains(element, tag, replace(frame, matrix=np.eye(3)))
         points = chains[0] if chains else np.zeros((0, 2))
         ways = np.diff(points, axis=0)
-        return turned(points, [np.zeros(2), *ways], [*ways, np.zeros(2)])
+        return turned([*points], [np.zeros(2), *ways], [*ways, np.zeros(2)])
 
     def _chains(self, element: Element, tag: str, frame: _Frame) -> list[FloatArray]:
         """The subpaths of a shape on the page."""

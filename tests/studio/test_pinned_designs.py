@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,6 +14,7 @@ import ezdxf
 import ezdxf.math
 import pytest
 from PIL import Image
+from pypdf import PdfReader
 
 import kirigami_studio as ks
 from kirigami_studio.__main__ import main
@@ -24,6 +26,7 @@ from kirigami_studio.export import registry
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import PANEL
 from kirigami_studio.fabricate.fastener import Fastener
+from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.fabricate.material import Construction, find_material
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.steps import never
@@ -34,7 +37,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for
-from kirigami_studio.studio import assembling
+from kirigami_studio.studio import assembling, verdict
 from kirigami_studio.studio.as_cut import Source, estimate
 from kirigami_studio.studio.checking import checked, checked_together
 from kirigami_studio.studio.making import (
@@ -48,6 +51,7 @@ from kirigami_studio.studio.making import (
     planning,
     printed_job,
     timing,
+    written_pieces,
 )
 from kirigami_studio.studio.verdict import Level, look_at
 from tests.pinned_assemblies import plain_pinwheel
@@ -83,6 +87,17 @@ def test_that_estimate_and_close_look_say_that_pins_close(pinwheel: Document, ma
     assert guess.closes and guess.source is Source.ESTIMATE and guess.strain == 0.0
     look = look_at(candidate, settings, pinwheel.target)
     assert look.refusal is None and look.as_cut is made.made.as_cut
+
+
+def test_that_a_close_look_leaves_pieces_that_miss_their_target_to_the_ranking(
+    pinwheel: Document, made: MadePieces, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (candidate,), settings = pinwheel.candidates, pinwheel.fabrication
+    missed = verdict.Verdict((Problem.warning("pinned.target_missed", lost=1.1, beyond=5.4),))
+    monkeypatch.setattr(verdict, "judge_assembled", lambda *_: missed)
+    look = look_at(candidate, settings, pinwheel.target)
+    assert look.refusal is None
+    assert look.loss == pytest.approx(candidate.score.iou_exact - made.report.figures.match)
 
 
 def test_that_command_line_api_and_window_write_the_same_pieces(
@@ -342,3 +357,17 @@ def test_that_a_close_look_ends_where_a_piece_falls_apart(pinwheel: Document, mo
     monkeypatch.setattr("kirigami_studio.assembly.pinned.extend_to", None)  # rims are not shaped any more
     refusal = look_at(pinwheel.candidates[0], large, pinwheel.target).refusal
     assert refusal is not None and refusal.text == problem.text
+
+
+def test_that_assembly_sheet_and_stage_say_where_to_hold_and_pull(
+    pinwheel: Document, made: MadePieces, tmp_path: Path
+) -> None:
+    held, pulled = (made.made.assembly.pieces[panel].id for panel in made.grips)
+    assert held != pulled and made.posed.grips == made.grips
+    written_pieces(CutRequest.of(pinwheel), Output(tmp_path / "files", "cut"))
+    pages = [page.extract_text() for page in PdfReader(tmp_path / "files" / "assembly.pdf").pages]
+    assert f"hold {held}, pull {pulled}" in pages[0]
+    # Pulled apart, or pushed together: the way is never a turn alone.
+    poses = [made.made.assembly.poses(phi)[list(made.grips), :2] for phi in (math.pi, 0.75 * math.pi)]
+    apart = [math.dist(*pose) for pose in poses]
+    assert abs(apart[1] - apart[0]) > 1.0
