@@ -96,7 +96,7 @@ def test_that_guides_catch_what_is_drawn_and_what_is_moved(plate: MainWindow) ->
     drag(plate, (0, 0), (13.5, 13.1))  # the plate's right side comes near x = 33.3, its upper side near y = 23.3
     assert placed(plate).polygon.bounds == pytest.approx((-6.7, 3.3, 33.3, 23.3))
     use(plate, Tool.RECTANGLE)
-    drag(plate, (33.1, 23.5), (60, 60), PLAIN)
+    drag(plate, (33.1, 23.5), (44, 32), PLAIN)
     assert context.active is not None
     assert context.active.polygon.bounds[:2] == pytest.approx((33.3, 23.3))
 

@@ -95,7 +95,7 @@ def test_that_it_lies_below_the_drawing_board(window: MainWindow, until: Until, 
     assert row.shape.currentData() == PRESENT and not row.shape.itemIcon(row.shape.currentIndex()).isNull()
     assert (row.angle.value(), row.weight.value()) == (45.0, 0.3) and row.angle.isEnabled()
     qtbot.mouseClick(row.remove, Qt.MouseButton.LeftButton)
-    assert window.session.document.settings.second is None and not row.isVisible()
+    assert window.session.document.settings.second is None and not row.remove.isVisible()
     assert window.session.history.undo_label == "Remove the second target"
 
 

@@ -1,4 +1,4 @@
-"""The sheet as it is cut: the plan with its problems and connectors, and the job played cut by cut."""
+"""The sheet as it is cut: plan, problems, connectors, and the job played cut by cut."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From design to cut file: machine, material, construction, widths in mm, options, live numbers, export."""
+"""From design to cut file: machine, material, widths, options, live numbers, export."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ PICTURE, LEAST_LIST = QSize(56, 56), 150
 
 
 class CuttingQuestion(QFrame):
-    """Asks for the machine, then for a material that it cuts, with a picture of the sheet that it becomes."""
+    """Two lists: machines, then the materials of one, each with a picture of its construction."""
 
     answered = Signal(str, str)  #: keys of a machine and of a material
     declined = Signal()
@@ -67,7 +67,7 @@ class CuttingQuestion(QFrame):
             self._add(tr(machine.name), machine.key, tr(about[machine.kind]))
 
     def _offer_materials(self, key: str) -> None:
-        """List what a machine cuts, by name; what one sheet cannot be made of comes last and says so."""
+        """List the materials of a machine by name, those that one sheet cannot be made of last."""
         machine = find_machine(key)
         self._begin(tr("{machine}: which material?", machine=tr(machine.name)), key)
         offered = cuttable(machine).items()

@@ -1,4 +1,4 @@
-"""The form of the next run: grid, symmetry, balance, angle, number; under More the search; and a second target.
+"""The form of the next run: grid, symmetry, balance, angle, number, search; second target.
 
 The row of the second target is made here; the window puts it below the drawing board.
 """

@@ -26,7 +26,7 @@ MOST_LINES = 9
 
 
 class MessageBar(QFrame):
-    """Shows the newest message; warnings and errors stay a click away until they are closed, others go by themselves.
+    """The newest message; warnings and errors stay until they are closed, others go.
 
     Its owner says where it lies, by :meth:`lay_over`, whenever that changes or ``content_changed`` is told.
     """

@@ -145,7 +145,7 @@ class DecimalField(QDoubleSpinBox):
 
 
 class LengthField(DecimalField):
-    """A length in mm that may be typed as ``3 in``, ``3/8"``, ``8.5 cm`` or ``50 um``; it shows mm, or inches."""
+    """A length in mm, shown in mm or inches, and typed as ``3 in``, ``3/8"`` or ``50 um``."""
 
     units = LENGTH_UNITS
 
@@ -162,7 +162,7 @@ class LengthField(DecimalField):
 
 
 def show_lengths(root: QWidget, inches: bool) -> None:
-    """Let all fields for lengths, those below a widget at once, show and read inches, or mm again."""
+    """Show and read inches, or mm again, in all fields for lengths below a widget."""
     LengthField.assumed = "in" if inches else ""
     for field in root.findChildren(LengthField):
         field.setSuffix(field.suffix())

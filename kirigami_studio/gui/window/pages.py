@@ -126,12 +126,12 @@ class Pages(QWidget):
 
     @property
     def player(self) -> DeploymentBar | CutBar:
-        """What Space plays: the cutting while its sheet has the keyboard, else the deployment."""
+        """The player of Space: the cutting while its sheet has the keyboard, else the deployment."""
         return self.cuts.bar if self._at_cuts else self.stage.player
 
     @property
     def in_sight(self) -> TargetView | CutView | StagePanel:
-        """What is zoomed."""
+        """The view that is zoomed."""
         if self.page is Page.SHAPE:
             return self.target.view
         return self.cuts.view if self._at_cuts else self.stage
@@ -158,7 +158,7 @@ class Pages(QWidget):
     # widths --------------------------------------------------------------------------------------------------------
 
     def share_width(self, width: int) -> None:
-        """Share the window's new width among the columns of the page, until the user has moved a border."""
+        """Share the window's new width among the columns until the user has moved a border."""
         if self.page not in self._moved:
             self._share(width)
 

@@ -1,4 +1,4 @@
-"""Examples of pairs: finished designs from one shape to another, each pictured flat, half open and open."""
+"""Examples of pairs: finished designs from one shape to another, flat, half open and open."""
 
 from __future__ import annotations
 

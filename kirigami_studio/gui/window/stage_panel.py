@@ -1,4 +1,4 @@
-"""The chosen design, large: layout or comparison, with overlays, plots and the deployment; and its presenter."""
+"""The chosen design, large: layout or comparison, overlays, plots, deployment; its presenter."""
 
 from __future__ import annotations
 

@@ -155,7 +155,7 @@ def _views(pages: Pages, presenters: Presenters) -> tuple[Command, ...]:
 
 
 def _zooms(pages: Pages) -> tuple[Command, ...]:
-    """What is in sight is zoomed: the drawing board, the stage or the sheet."""
+    """Commands that zoom the drawing board, the stage or the sheet."""
     board, command = pages.target, partial(Command, inside(tr("&Zoom")))
     real = tr("Show a millimetre as long as it is on paper")
     drawn = partial(command, enabled_when=attrgetter("editing_target"))

@@ -1,4 +1,4 @@
-"""What each construction looks like, half open: pictures for the first question of the window.
+"""Pictures of each construction, half open, for the first question of the window.
 
 ``python -m kirigami_studio.lab.demonstrations.construction_pictures --out resources/constructions`` designs the same
 square in a material of each construction and pictures it from the stage.
