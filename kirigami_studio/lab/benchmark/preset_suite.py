@@ -346,16 +346,23 @@ def _kept(run: PresetRun, store: RunStore) -> PresetSheet:
 def judged_preset(run: PresetRun) -> PresetSheet:
     """Judge the best design of a shape in a material."""
     target, settings, making = load(run.shape), run.settings, run.making
-    named = run.material.key, run.shape
-    made = making.construction.value, making.width_mm, making.k
     wanted = DesignSettings(k=making.k, seed=run.seed)
     best = completed(run_design(request_for(target, wanted, settings), settings), lambda _: None).best
+    sheet = PresetSheet(
+        run.material.key,
+        run.shape,
+        Level.FAILS.value,
+        making.construction.value,
+        making.width_mm,
+        making.k,
+        grid=best.sheet.grid,
+    )
     try:
         found = _judged(best, settings, target)
     except KirigamiError as error:
-        return PresetSheet(*named, Level.FAILS.value, *made, (error.code,), best.sheet.grid)
+        return replace(sheet, codes=(error.code,))
     codes = tuple(problem.code for problem in found.problems)
-    sheet = PresetSheet(*named, found.level.value, *made, codes, best.sheet.grid)
+    sheet = replace(sheet, level=found.level.value, codes=codes)
     return sheet if found.as_cut is None else _with_figures(sheet, found.as_cut)
 
 
