@@ -34,8 +34,8 @@ MARKS = {Level.READY: "ready", Level.CARE: "care", Level.FAILS: "FAILS"}
 #: Larger sheets that are tried where a usual one is not ready, as multiples of it, and the most of a bed's shorter side
 #: that a sheet with its frame is wide.
 LARGER, OF_BED = (1.5, 2.0), 0.85
-#: Backed and pinned sheets are tried at this width (mm).
-BOARD_MM = 300.0
+#: Backed and pinned sheets are tried at this width (mm), backed ones somewhat smaller, too: a frame goes round them.
+BOARD_MM, BACKED_SHARES = 300.0, (1.0, 0.85)
 #: Designs of a run unless asked otherwise: the best of these is tried at last.
 USUAL_DESIGNS = DesignSettings().k
 #: Lines in a Markdown file between which the table stands.
@@ -244,7 +244,7 @@ def other_makings(material: Material, k: int) -> Iterator[Making]:
     if usual.construction is not rigid and stiffness(material) >= STIFF:
         yield Making(rigid, width, k)
     if usual.construction is not Construction.BACKED:
-        yield Making(Construction.BACKED, width, k)
+        yield from (Making(Construction.BACKED, share * width, k) for share in BACKED_SHARES)
     yield from (replace(usual, width_mm=share * usual.width_mm) for share in LARGER if share * usual.width_mm <= room)
     if k < USUAL_DESIGNS:
         yield replace(usual, k=USUAL_DESIGNS)
