@@ -22,7 +22,13 @@ from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 #: Letters and lines on white or black paper; the curve; where something is too much.
 GREY, LINE, ALARM = "#7a7f87", "#3b82c4", "#e5484d"
 #: Layers of cuts as they are seen on both; files have the colours that machines know.
-LAYERS = {Layer.RELIEF: "#d9730d", Layer.SLITS: ALARM, Layer.EDGE_SLITS: "#30a46c", Layer.OUTLINE: LINE}
+LAYERS = {
+    Layer.RELIEF: "#d9730d",
+    Layer.SLITS: ALARM,
+    Layer.EDGE_SLITS: "#30a46c",
+    Layer.HOLES: LINE,
+    Layer.OUTLINE: LINE,
+}
 PANEL_FILL, PANEL_LINE = hexadecimal(PANEL), hexadecimal(PANEL_EDGE)
 TARGET = hexadecimal(TARGET_EDGE)
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif"

@@ -32,7 +32,7 @@ from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRe
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import NAME_LAYER
-from kirigami_studio.export.provenance import AROUND, PROGRAM, THROUGH
+from kirigami_studio.export.provenance import AROUND, PROGRAM, SLOT_KERF, THROUGH
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
@@ -146,6 +146,8 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         outline = _find_outline(content.paths, problems)
     else:
         outline = tabbed_outline(content, problems)
+    if outline is not None:
+        outline = _with_holes(outline, content, problems)
     problems += placement_problems(content.paths, outline)
     pieces, ligament = _physics(content, outline, kerf, problems)
     if record is not None and ligament is not None and ligament < record.least_connector_mm - WIDTH_TOLERANCE_MM:
@@ -400,6 +402,31 @@ def _find_outline(paths: Sequence[FilePath], problems: list[Problem]) -> Polygon
     return outline
 
 
+def _holes_said(facts: Mapping[str, str]) -> int:
+    """How many holes a file of ours says that its silhouette has."""
+    said = facts.get("HOLES", "0")
+    return int(said) if said.isdecimal() and len(said) <= 3 else 0
+
+
+def _with_holes(outline: Polygon, content: DxfContent, problems: list[Problem]) -> Polygon:
+    """The area inside the outline less as many holes as the file says: the last closed cuts.
+
+    Slots run into holes: in a file of slots they are slots like the others.
+    """
+    count = 0 if SLOT_KERF in content.facts else _holes_said(content.facts)
+    if not count:
+        return outline
+    near = outline.exterior.buffer(SAME_POINT_MM)
+    layered = [path for path in content.paths if path.layer == Layer.HOLES.value]
+    closed = [path.points for path in layered or content.paths if path.closed and len(path.points) > 3]
+    holes = [points for points in closed if not LineString(points).within(near)][-count:]
+    cut = Polygon(outline.exterior, holes)
+    if len(holes) < count or not cut.is_valid:
+        problems.append(Problem.error("cut_file.holes_differ", count=len(holes), promised=count))
+        return outline
+    return cut
+
+
 def _chains(paths: Sequence[FilePath]) -> list[LineString]:
     """Join lines whose ends meet, each piece of line used once."""
     snapped = shapely.set_precision(shapely.multilinestrings([LineString(path.points) for path in paths]), 1e-6)
@@ -487,11 +514,11 @@ def _physics(
     """Cut the sheet: number of pieces and narrowest ligament."""
     if outline is None or "PART" in content.facts:
         return None, None
-    ring = outline.exterior
+    ring = outline.boundary
     near_ring = ring.buffer(SAME_POINT_MM)
     inner = [path for path in content.paths if not LineString(path.points).within(near_ring)]
     holes = [Polygon(path.points) for path in inner if path.closed and len(path.points) > 3]
-    problems += _loose_discs(inner)
+    problems += _loose_discs(inner, _holes_said(content.facts))
     sheet: BaseGeometry = outline.difference(shapely.union_all([hole for hole in holes if hole.is_valid]))
     cuts, joined = _inner_cuts(inner, content.facts, problems)
     left = remaining_pieces(sheet, cuts, kerf)
@@ -513,13 +540,13 @@ def _physics(
     return pieces, ligament.width_mm
 
 
-def _loose_discs(inner: Sequence[FilePath]) -> list[Problem]:
-    """Closed cuts inside the outline, beside relief holes and slots: their inside falls out."""
+def _loose_discs(inner: Sequence[FilePath], meant: int = 0) -> list[Problem]:
+    """Closed cuts whose inside falls out, beside relief holes, slots and holes that are meant."""
     closed = [Polygon(path.points) for path in inner if path.closed and path.layer != Layer.RELIEF.value
               and len(path.points) > 3]  # fmt: skip
     # Twice the area over half the length: about the width of a slot, the radius of a disc.
     wide = [ring for ring in closed if 4.0 * ring.area > WIDEST_SLOT_MM * 2.0 * ring.length]
-    if not wide:
+    if len(wide) <= meant:
         return []
     largest = max(wide, key=lambda ring: float(ring.area))
     size = math.sqrt(4.0 * largest.area / math.pi)

@@ -89,7 +89,7 @@ class Ranking:
     def of(cls, request: Request) -> Ranking:
         """As a request asks for it."""
         sizes = request.width_mm, request.least_feature_mm, request.least_gap_mm
-        return cls(request.regular, *sizes, trimmed_first=request.trim)
+        return cls(request.regular, *sizes, trimmed_first=request.trims)
 
     def wide_enough(self, candidate: Candidate) -> bool:
         """Whether all panels are as wide as the material needs them."""
@@ -199,7 +199,7 @@ class Ranking:
         even = first.score.evenness
         if not self.cuttable(first):
             return self._why_not(first)
-        if first.trim is not None and first.trim.holes_open:
+        if first.trim is not None and first.trim.holes:
             return Note.of("rank.holes_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
         if first.trim is not None and first.trim.given_up:
             shares = {"match": 100 * first.match, "percent": 100 * first.given_up}

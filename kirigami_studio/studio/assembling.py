@@ -117,10 +117,13 @@ def assembled(
     Raises
     ------
     FabricationError
-        No such material, or pieces that cannot be made, or fall apart where only whole ones are wanted.
+        No such material, a target with holes, or pieces that cannot be made, or fall apart where only whole ones are
+        wanted.
     UsageError
         An ear that is no wider than its hole.
     """
+    if target.holes:
+        raise FabricationError("pinned.target_has_holes", count=len(target.holes))
     options, hold = pin_options(settings), hold_options(settings)
     machine = machine_for(settings) if options.in_one_plane else None
     key = (candidate, target, settings.width_mm, options, machine, hold, settings.moved_by)

@@ -156,6 +156,9 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
+    gap_mm = pin_gap_mm(cut)
+    if gap_mm and target.holes:
+        raise FabricationError("pinned.target_has_holes", count=len(target.holes))
     return Request.of(
         target,
         wanted,
@@ -164,7 +167,7 @@ def request_for(
         width_mm=cut.width_mm,
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
         room_mm=sizes_of(cut)[1],
-        least_gap_mm=pin_gap_mm(cut),
+        least_gap_mm=gap_mm,
     )
 
 
@@ -257,6 +260,7 @@ def why_covered(candidates: Sequence[Candidate], target: Outline | None, start: 
         return None
     closed, cover = best[Family.CLOSED], best[Family.COVER]
     figures = {"closed": 100.0 * closed.match, "cover": 100.0 * cover.match, "given_up": 100.0 * cover.given_up}
+    target = target.filled
     back = turn_back(target)
     if back.angle >= TURNS_BACK:
         low, high = target.points.min(axis=0), target.points.max(axis=0)

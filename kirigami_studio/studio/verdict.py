@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -152,7 +154,9 @@ _ANSWERS = {
     (Question.FILES, AnswerState.OPEN): mark("no files read yet"),
 }
 #: Findings that answer a question; files have those of their reading, the material all others.
-_MATCH_FINDINGS = frozenset({"as_cut.loses_match", "as_cut.does_not_match"})
+_MATCH_FINDINGS = frozenset(
+    {"as_cut.loses_match", "as_cut.does_not_match", "trim.hole_too_small", "trim.hole_holds_sheet"}
+)
 _CLOSING_FINDINGS = frozenset(
     {
         NEARLY,
@@ -487,6 +491,7 @@ def judge(
     problems = [
         *_of_files(verifications, candidate.final_phi, known),
         *_of_design(candidate),
+        *_of_holes(candidate, plan.size_mm[0]),
         *(_weighed(problem) for problem in report.problems if problem.code not in STRAINED),
         *_of_wishes(plan),
         *_of_jam(known),
@@ -559,6 +564,7 @@ def expected(
     refusal = ranking.refusals.get(candidate)
     problems = [
         *_of_design(candidate),
+        *_of_holes(candidate, ranking.width_mm),
         *_of_room(candidate, ranking),
         *([] if refusal is None else _of_refusal(refusal)),
         *_of_jam(as_cut),
@@ -601,6 +607,23 @@ def _of_wishes(plan: CutPlan) -> list[Problem]:
 def _of_design(candidate: Candidate) -> list[Problem]:
     """A sheet that was fitted for trimming is free of contacts; its score is that of the sheet before."""
     return [] if candidate.score.feasible or candidate.trim is not None else [Problem.error("rank.not_feasible")]
+
+
+def _of_holes(candidate: Candidate, width_mm: float) -> list[Problem]:
+    """Holes of the target that the trimmed sheet does not show, and where on it they would be."""
+    trim = candidate.trim
+    if trim is None or not trim.closed_holes:
+        return []
+    flat = deploy(trim.sheet).compact
+    low, scale = flat.min(axis=0), width_mm / float(np.ptp(flat[:, 0]))
+    problems = []
+    for small in (True, False):
+        closed = [hole for hole in trim.closed_holes if hole.is_small is small]
+        if closed:
+            x, y = ((np.array(closed[0].place) - low) * scale).tolist()
+            code, where = "trim.hole_too_small" if small else "trim.hole_holds_sheet", {"x": x, "y": y}
+            problems.append(Problem.warning(code, (x, y), count=len(closed), total=len(trim.holes), **where))
+    return problems
 
 
 def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:

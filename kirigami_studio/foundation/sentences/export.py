@@ -352,6 +352,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "cut_file.copies_differ": mark(
         "The file promises {promised:.20} copies of a sheet; those in it are not alike or not apart. Export it again."
     ),
+    "cut_file.holes_differ": mark_n(
+        "{count} hole of the silhouette is cut, where the file promises {promised}. Export it again.",
+        "{count} holes of the silhouette are cut, where the file promises {promised}. Export it again.",
+    ),
     "cut_file.joins_differ": mark_n(
         "{count} cut ends on another cut, where the file promises {promised:.20}: a connector is lost or a slit "
         "misses its end. Export it again.",

@@ -42,6 +42,7 @@ LAYER_NAMES = {
     Layer.RELIEF: mark("relief ends"),
     Layer.SLITS: mark("slits"),
     Layer.EDGE_SLITS: mark("edge slits"),
+    Layer.HOLES: mark("holes"),
     Layer.OUTLINE: mark("outline"),
 }
 #: Narrower than this (pixels) the legend leaves the outline out.

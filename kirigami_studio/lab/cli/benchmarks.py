@@ -536,6 +536,17 @@ def starts(arguments: argparse.Namespace) -> int:
     return 0 if all(one.ok for one in fields) else 1
 
 
+def holes(arguments: argparse.Namespace) -> int:
+    """Targets with holes, designed and cut; 1 for a hole that is closed or a sheet in pieces."""
+    from kirigami_studio.lab.benchmark.holes_suite import design_holes, hole_figures, hole_sentences
+
+    line = ProgressLine()
+    shown = _shown_on(line, "Designs")
+    each = design_holes(arguments.shapes, arguments.k, arguments.seed, arguments.width_mm, shown)
+    _print_figures(arguments, line, hole_figures(each), hole_sentences(each))
+    return 0 if all(one.pieces == 1 and not one.closed_holes for one in each) else 1
+
+
 def pinned(arguments: argparse.Namespace) -> int:
     """Targets designed for two layers of panels on pins; 1 when the pieces of one cannot be put together."""
     from kirigami_studio.lab.benchmark.pinned_suite import design_pinned
@@ -543,7 +554,7 @@ def pinned(arguments: argparse.Namespace) -> int:
     line = ProgressLine()
     named = solid_names() if arguments.targets == ["library"] else arguments.targets
     grid = parse_grid_or_auto(arguments.grid)
-    chosen = {} if grid is None else {"grid": grid, "auto_grid": False}
+    chosen: dict[str, Any] = {} if grid is None else {"grid": grid, "auto_grid": False}
     cut = {"material": arguments.material, "construction": Construction.PINNED, "width_mm": arguments.width_mm}
     found = design_pinned(
         [target.read() for target in read_targets(list(named))],

@@ -384,6 +384,12 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         SEED, *FIGURES,
     ), ("kirigami-studio benchmark pinned --targets library",
         "kirigami-studio benchmark pinned --starts circle --targets square star")),
+    SubCommand("benchmark holes", "design drawn targets with holes and cut them in film", "lab.cli.benchmarks:holes", (
+        option("--shapes", nargs="+", default=[], metavar="NAME",
+               help="some of them by name, as 'A' or 'ring 55 %%' (default: all)"),
+        option("--width-mm", type=float, default=160.0, help="width of the flat sheet (default 160)"),
+        samples(32), SEED, *FIGURES,
+    ), ("kirigami-studio benchmark holes", "kirigami-studio benchmark holes --shapes A O gear --k 8")),
     SubCommand("benchmark solvers", "compare the paper's solvers with fits and samples (its Table 1)",
                "lab.cli.benchmarks:solvers", (
         *targets_of_a_suite(20), EXACT, GRID, SEEDS,

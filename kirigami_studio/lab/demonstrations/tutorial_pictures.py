@@ -42,7 +42,13 @@ HEART_MM = 80.0
 PRESET, AUTHOR, GAPS = "card-co2", "Ada", "1.21 1.18 1.24"
 #: Pixels of a millimetre in the picture of the coupon, and around it.
 COUPON_SCALE, COUPON_MARGIN = 13.0, 16
-INKS = {Layer.SLITS: "#2f6fb5", Layer.EDGE_SLITS: "#00805f", Layer.OUTLINE: "#1d2733", Layer.RELIEF: "#c2410c"}
+INKS = {
+    Layer.SLITS: "#2f6fb5",
+    Layer.EDGE_SLITS: "#00805f",
+    Layer.HOLES: "#1d2733",
+    Layer.OUTLINE: "#1d2733",
+    Layer.RELIEF: "#c2410c",
+}
 
 
 class TutorialPictures(OffscreenSession):
