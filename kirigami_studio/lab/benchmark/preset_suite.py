@@ -51,6 +51,7 @@ class Making:
     construction: Construction
     width_mm: float
     k: int
+    connector_mm: float | None = None  #: the material's own unless given
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +69,9 @@ class PresetRun:
         making = self.making
         if making == usual_making(self.material, making.k):
             return new_settings({"material": self.material.key})
-        chosen = {"construction": making.construction, "width_mm": making.width_mm}
+        chosen: dict[str, object] = {"construction": making.construction, "width_mm": making.width_mm}
+        if making.connector_mm is not None:
+            chosen |= {"connector_mm": making.connector_mm}
         return new_settings({"material": self.material.key, **chosen})
 
     @property
@@ -84,6 +87,7 @@ class PresetRun:
             making.k,
             self.seed,
             preset,
+            *(() if making.connector_mm is None else (f"{making.connector_mm:g}",)),
         )
 
 
@@ -99,6 +103,8 @@ class PresetSheet:
         Of the flat sheet.
     k : int
         Number of designs that the best was taken of.
+    connector_mm : float or None
+        Where it is not the material's own.
     level : str
         Of the verdict, in words of JSON.
     codes : tuple of str
@@ -120,6 +126,7 @@ class PresetSheet:
     construction: str = Construction.ONE_SHEET.value
     width_mm: float = math.nan
     k: int = 0
+    connector_mm: float | None = None
     codes: tuple[str, ...] = ()
     grid: tuple[int, int] = (0, 0)
     jam_deg: float = math.nan
@@ -132,7 +139,9 @@ class PresetSheet:
     @classmethod
     def of(cls, record: Record) -> PresetSheet:
         """From the record of a run; JSON has lists for tuples, and null for what is not finite."""
-        values = {name: math.nan if value is None else value for name, value in record.items()}
+        values = {
+            name: math.nan if value is None and name != "connector_mm" else value for name, value in record.items()
+        }
         values |= {name: tuple(values[name]) for name in ("codes", "grid")}  # type: ignore[arg-type]
         return cls(**values)  # type: ignore[arg-type]
 
@@ -216,6 +225,8 @@ class PresetFigures:
 def _cell(usual: PresetSheet, ready: PresetSheet | None) -> str:
     if usual.ready or ready is None:
         return usual.cell
+    if ready.connector_mm is not None:
+        return f"{usual.cell}; connectors {ready.connector_mm:g} mm: {ready.cell}"
     if (ready.construction, ready.width_mm) == (usual.construction, usual.width_mm):
         return f"{ready.cell} (best of {ready.k})"
     return f"{usual.cell}; {ready.construction} {ready.width_mm:g} mm: {ready.cell}"
@@ -245,6 +256,8 @@ def other_makings(material: Material, k: int) -> Iterator[Making]:
         yield Making(rigid, width, k)
     if usual.construction is not Construction.BACKED:
         yield from (Making(Construction.BACKED, share * width, k) for share in BACKED_SHARES)
+    if usual.construction is Construction.ONE_SHEET and material.min_ligament_mm < material.connector_mm:
+        yield replace(usual, connector_mm=material.min_ligament_mm)
     yield from (replace(usual, width_mm=share * usual.width_mm) for share in LARGER if share * usual.width_mm <= room)
     if k < USUAL_DESIGNS:
         yield replace(usual, k=USUAL_DESIGNS)
@@ -355,6 +368,7 @@ def judged_preset(run: PresetRun) -> PresetSheet:
         making.construction.value,
         making.width_mm,
         making.k,
+        making.connector_mm,
         grid=best.sheet.grid,
     )
     try:
