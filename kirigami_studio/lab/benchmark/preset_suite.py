@@ -103,8 +103,6 @@ class PresetSheet:
         Of the flat sheet.
     k : int
         Number of designs that the best was taken of.
-    connector_mm : float or None
-        Where it is not the material's own.
     level : str
         Of the verdict, in words of JSON.
     codes : tuple of str
@@ -118,6 +116,8 @@ class PresetSheet:
         Which of the two figures that is.
     iou, iou_as_cut : float
         Exact, of the design, and of the sheet where it comes to.
+    connector_mm : float or None
+        Width where it is not the material's own.
     """
 
     material: str
@@ -126,7 +126,6 @@ class PresetSheet:
     construction: str = Construction.ONE_SHEET.value
     width_mm: float = math.nan
     k: int = 0
-    connector_mm: float | None = None
     codes: tuple[str, ...] = ()
     grid: tuple[int, int] = (0, 0)
     jam_deg: float = math.nan
@@ -135,6 +134,7 @@ class PresetSheet:
     figure: str = ""
     iou: float = math.nan
     iou_as_cut: float = math.nan
+    connector_mm: float | None = None
 
     @classmethod
     def of(cls, record: Record) -> PresetSheet:
@@ -368,8 +368,8 @@ def judged_preset(run: PresetRun) -> PresetSheet:
         making.construction.value,
         making.width_mm,
         making.k,
-        making.connector_mm,
         grid=best.sheet.grid,
+        connector_mm=making.connector_mm,
     )
     try:
         found = _judged(best, settings, target)
