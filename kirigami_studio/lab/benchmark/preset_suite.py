@@ -34,8 +34,8 @@ MARKS = {Level.READY: "ready", Level.CARE: "care", Level.FAILS: "FAILS"}
 #: Larger sheets that are tried where a usual one is not ready, as multiples of it, and the most of a bed's shorter side
 #: that a sheet with its frame is wide.
 LARGER, OF_BED = (1.5, 2.0), 0.85
-#: Backed and pinned sheets are tried at this width (mm).
-BOARD_MM = 300.0
+#: Backed and pinned sheets are tried at this width (mm), backed ones somewhat smaller, too: a frame goes round them.
+BOARD_MM, BACKED_SHARES = 300.0, (1.0, 0.85)
 #: Designs of a run unless asked otherwise: the best of these is tried at last.
 USUAL_DESIGNS = DesignSettings().k
 #: Lines in a Markdown file between which the table stands.
@@ -51,6 +51,7 @@ class Making:
     construction: Construction
     width_mm: float
     k: int
+    connector_mm: float | None = None  #: the material's own unless given
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +69,9 @@ class PresetRun:
         making = self.making
         if making == usual_making(self.material, making.k):
             return new_settings({"material": self.material.key})
-        chosen = {"construction": making.construction, "width_mm": making.width_mm}
+        chosen: dict[str, object] = {"construction": making.construction, "width_mm": making.width_mm}
+        if making.connector_mm is not None:
+            chosen |= {"connector_mm": making.connector_mm}
         return new_settings({"material": self.material.key, **chosen})
 
     @property
@@ -84,6 +87,7 @@ class PresetRun:
             making.k,
             self.seed,
             preset,
+            *(() if making.connector_mm is None else (f"{making.connector_mm:g}",)),
         )
 
 
@@ -112,6 +116,8 @@ class PresetSheet:
         Which of the two figures that is.
     iou, iou_as_cut : float
         Exact, of the design, and of the sheet where it comes to.
+    connector_mm : float or None
+        Width where it is not the material's own.
     """
 
     material: str
@@ -128,11 +134,14 @@ class PresetSheet:
     figure: str = ""
     iou: float = math.nan
     iou_as_cut: float = math.nan
+    connector_mm: float | None = None
 
     @classmethod
     def of(cls, record: Record) -> PresetSheet:
         """From the record of a run; JSON has lists for tuples, and null for what is not finite."""
-        values = {name: math.nan if value is None else value for name, value in record.items()}
+        values = {
+            name: math.nan if value is None and name != "connector_mm" else value for name, value in record.items()
+        }
         values |= {name: tuple(values[name]) for name in ("codes", "grid")}  # type: ignore[arg-type]
         return cls(**values)  # type: ignore[arg-type]
 
@@ -216,6 +225,8 @@ class PresetFigures:
 def _cell(usual: PresetSheet, ready: PresetSheet | None) -> str:
     if usual.ready or ready is None:
         return usual.cell
+    if ready.connector_mm is not None:
+        return f"{usual.cell}; connectors {ready.connector_mm:g} mm: {ready.cell}"
     if (ready.construction, ready.width_mm) == (usual.construction, usual.width_mm):
         return f"{ready.cell} (best of {ready.k})"
     return f"{usual.cell}; {ready.construction} {ready.width_mm:g} mm: {ready.cell}"
@@ -244,7 +255,9 @@ def other_makings(material: Material, k: int) -> Iterator[Making]:
     if usual.construction is not rigid and stiffness(material) >= STIFF:
         yield Making(rigid, width, k)
     if usual.construction is not Construction.BACKED:
-        yield Making(Construction.BACKED, width, k)
+        yield from (Making(Construction.BACKED, share * width, k) for share in BACKED_SHARES)
+    if usual.construction is Construction.ONE_SHEET and material.min_ligament_mm < material.connector_mm:
+        yield replace(usual, connector_mm=material.min_ligament_mm)
     yield from (replace(usual, width_mm=share * usual.width_mm) for share in LARGER if share * usual.width_mm <= room)
     if k < USUAL_DESIGNS:
         yield replace(usual, k=USUAL_DESIGNS)
@@ -346,16 +359,24 @@ def _kept(run: PresetRun, store: RunStore) -> PresetSheet:
 def judged_preset(run: PresetRun) -> PresetSheet:
     """Judge the best design of a shape in a material."""
     target, settings, making = load(run.shape), run.settings, run.making
-    named = run.material.key, run.shape
-    made = making.construction.value, making.width_mm, making.k
     wanted = DesignSettings(k=making.k, seed=run.seed)
     best = completed(run_design(request_for(target, wanted, settings), settings), lambda _: None).best
+    sheet = PresetSheet(
+        run.material.key,
+        run.shape,
+        Level.FAILS.value,
+        making.construction.value,
+        making.width_mm,
+        making.k,
+        grid=best.sheet.grid,
+        connector_mm=making.connector_mm,
+    )
     try:
         found = _judged(best, settings, target)
     except KirigamiError as error:
-        return PresetSheet(*named, Level.FAILS.value, *made, (error.code,), best.sheet.grid)
+        return replace(sheet, codes=(error.code,))
     codes = tuple(problem.code for problem in found.problems)
-    sheet = PresetSheet(*named, found.level.value, *made, codes, best.sheet.grid)
+    sheet = replace(sheet, level=found.level.value, codes=codes)
     return sheet if found.as_cut is None else _with_figures(sheet, found.as_cut)
 
 
