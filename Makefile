@@ -17,7 +17,7 @@ QUICK_TESTS = $(shell grep -rLE --include='test_*.py' 'torch|distributed|PySide6
 
 CATALOGUES := $(patsubst %.po,%.mo,$(wildcard resources/locale/*/LC_MESSAGES/*.po))
 
-.PHONY: help setup run test test-all test-durations fuzz soak pinned prints readers quick lint bench consumers demo states pairs pictures shapes figures notebook \
+.PHONY: help setup run test test-all test-durations fuzz soak pinned prints checks readers quick lint bench consumers demo states pairs pictures shapes figures notebook \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 
@@ -30,7 +30,8 @@ help:
 	@echo "make fuzz    read INPUTS damaged files with every reader; bad ones are kept in build/fuzz"
 	@echo "make pinned  write DESIGNS random pinned designs and read them back without the program"
 	@echo "make prints  write PRINTS random designs on printed pins, and read them back by other libraries"
-	@echo "make readers  read ICONS drawings of npm packages, and compare them with what rsvg-convert paints"
+	@echo "make checks  export SETS random designs of every construction, and check their files against their exports"
+	@echo "make readers  read ICONS drawings of public packages and test suites, and compare them with what others paint"
 	@echo "make soak    call off 500 runs and undo 500 edits in one window, and tell what it holds"
 	@echo "make quick   only tests that need neither Qt nor torch; under 20 seconds"
 	@echo "make lint    run ruff, mypy and the import contracts"
@@ -122,15 +123,21 @@ DESIGNS ?= 200
 pinned: setup
 	OMP_NUM_THREADS=1 $(BIN)/python tests/random_assemblies.py $(DESIGNS)
 
-#: Icons of public packages, read and compared with an independent renderer: make readers ICONS=200 SEED=0
+#: Icons of npm packages, drawings of test suites from Debian's, and pictures: make readers ICONS=200 SEED=0 KINDS=dxf-tests
+KINDS ?=
 ICONS ?= 200
 readers: setup
-	OMP_NUM_THREADS=1 $(BIN)/python tests/icons_read.py --icons $(ICONS) --seed $(SEED) --out build/readers
+	OMP_NUM_THREADS=1 $(BIN)/python tests/drawings_read.py --icons $(ICONS) --seed $(SEED) --out build/readers $(KINDS)
 
 #: Random designs on printed pins, written and read back by lib3mf and numpy-stl.
 PRINTS ?= 40
 prints: setup
 	OMP_NUM_THREADS=1 $(BIN)/python tests/random_prints.py $(PRINTS)
+
+#: Random pinned, backed and printed designs, exported, each file checked alone and beside its design.
+SETS ?= 20
+checks: setup
+	OMP_NUM_THREADS=1 $(BIN)/python tests/exported_sets.py $(SETS)
 
 #: One window for an hour: GENERATIONS runs called off, EDITS undone; what it holds meanwhile, a line of JSON each.
 GENERATIONS ?= 500

@@ -234,6 +234,13 @@ READERS = {
 }
 
 
+#: The reader of targets on files of one kind each.
+KINDS = {
+    "target-svg": Reader(target, (".svg",)),
+    "target-dxf": Reader(target, (".dxf",)),
+    "target-pdf": Reader(target, (".pdf",)),
+    "target-picture": Reader(target, (".png", ".webp", ".tif", ".gif", ".jpg")),
+}
 #: Readers that load torch.
 LEARNED = frozenset({"weights", "manifest", "baseline", "training", "checkpoint", "runs"})
 
@@ -249,6 +256,7 @@ def faulty(path: Path) -> None:
 
 #: Readers that are not the program's.
 FAULTY = {"faulty": Reader(faulty, (".toml",))}
+ALL = READERS | KINDS | FAULTY
 
 
 def outcome(reader: Reader, path: Path) -> str:

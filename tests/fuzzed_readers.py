@@ -38,7 +38,7 @@ ATTACKS = TESTS / "data" / "attacks"
 #: Seconds of processor time, and bytes of memory beside what the program takes, that one file may cost.
 MOST_SECONDS, MOST_MEMORY = 5.0, 2 * 2**30
 #: Seconds by the clock after which a file that is still being read is given up: the machine may be busy.
-MOST_WAITING = 60.0
+MOST_WAITING = 600.0
 #: Files that one process reads.
 SHARE = 1000
 #: A seed of so many bytes is chosen half as often as an empty one, and one that hurt once this much more seldom.
@@ -47,10 +47,10 @@ USUAL_SIZE, SELDOM = 2000, 0.2
 
 def sources(reader: str) -> list[tuple[bytes, float]]:
     """What the files of a reader are made from, with how often each is chosen: small ones more often."""
-    from attacked_readers import FAULTY, READERS
+    from attacked_readers import ALL
 
     places = (TESTS / "data", RESOURCES / "examples", RESOURCES / "silhouettes", RESOURCES / "materials")
-    endings = (READERS | FAULTY)[reader].endings
+    endings = ALL[reader].endings
     found = sorted(path for place in places for path in place.rglob("*") if path.suffix.lower() in endings)
     contents = [
         (path.read_bytes(), SELDOM if ATTACKS in path.parents else 1.0)
@@ -63,7 +63,10 @@ def sources(reader: str) -> list[tuple[bytes, float]]:
 
 def whole(reader: str) -> list[bytes]:
     """Files that the program itself writes, and small ones of every kind that it reads."""
-    if reader in ("check", "dxf", "svg", "target", "parts", "carried", "opened", "pasted"):
+
+    if reader in ("check", "dxf", "svg", "target", "parts", "carried", "opened", "pasted") or reader.startswith(
+        "target-"
+    ):
         return _drawings(reader)
     if reader in ("mask", "artwork"):
         return [_picture("PNG"), *([SVG] if reader == "artwork" else [])]
@@ -125,7 +128,7 @@ def _page() -> bytes:
 
 def _drawings(reader: str) -> list[bytes]:
     import ezdxf
-    from attacked_readers import FAULTY, READERS
+    from attacked_readers import ALL
 
     from kirigami_studio.export.dxf import dxf_bytes
     from kirigami_studio.export.exporter import ExportJob
@@ -162,10 +165,11 @@ def _drawings(reader: str) -> list[bytes]:
         ".webp": [_picture("WEBP")],
         ".tif": [_picture("TIFF")],
         ".gif": [_picture("GIF")],
+        ".jpg": [_picture("JPEG")],
         ".pdf": [_page()],
     }
     of[".dxf"].append(text.getvalue().encode())
-    return [content for ending in (READERS | FAULTY)[reader].endings for content in of[ending]]
+    return [content for ending in ALL[reader].endings for content in of[ending]]
 
 
 def _arrays(reader: str) -> list[bytes]:
@@ -245,7 +249,7 @@ def _stop(_signal: int, _frame: FrameType | None) -> None:
 
 def read_many(reader: str, first: int, last: int, seed: int, folder: Path) -> None:
     """Read damaged files one by one, in this process; JSON for each that did not end well, and at the end."""
-    from attacked_readers import FAULTY, READERS, outcome
+    from attacked_readers import ALL, outcome
 
     signal.signal(signal.SIGPROF, _stop)
     seeds = sources(reader)
@@ -260,9 +264,7 @@ def read_many(reader: str, first: int, last: int, seed: int, folder: Path) -> No
         draw = random.Random(f"{seed} {reader} {number}")
         original = draw.choices(originals, cum_weights=weights)[0]
         content = mutated(original, originals, draw)
-        ending = (
-            draw.choice((READERS | FAULTY)[reader].endings) if draw.random() < 0.05 else ending_of(original, reader)
-        )
+        ending = draw.choice(ALL[reader].endings) if draw.random() < 0.05 else ending_of(original, reader)
         path = folder / f"{reader}.{first}{ending}"
         path.write_bytes(content)
         place.write_text(str(number))
@@ -271,7 +273,7 @@ def read_many(reader: str, first: int, last: int, seed: int, folder: Path) -> No
         resource.setrlimit(resource.RLIMIT_CPU, (int(begun + 3 * MOST_SECONDS) + 1, resource.RLIM_INFINITY))
         signal.setitimer(signal.ITIMER_PROF, MOST_SECONDS)
         try:
-            found = outcome((READERS | FAULTY)[reader], path)
+            found = outcome(ALL[reader], path)
         except _TooLongError:
             found = "UNCAUGHT too long"
         signal.setitimer(signal.ITIMER_PROF, 0.0)
@@ -295,14 +297,14 @@ def read_many(reader: str, first: int, last: int, seed: int, folder: Path) -> No
 
 def _warm(reader: str, originals: Sequence[bytes], place: Path) -> None:
     """Have the program import what it reads with, so that this does not count as a file's time and memory."""
-    from attacked_readers import FAULTY, READERS, outcome
+    from attacked_readers import ALL, outcome
 
-    for ending in (READERS | FAULTY)[reader].endings:
+    for ending in ALL[reader].endings:
         matching = [content for content in originals if ending_of(content, reader) == ending]
         path = place.with_suffix(ending)
         path.write_bytes(min(matching or originals, key=len))
         with contextlib.suppress(_TooLongError):
-            outcome((READERS | FAULTY)[reader], path)
+            outcome(ALL[reader], path)
         path.unlink(missing_ok=True)
     gc.collect()
 
@@ -315,9 +317,9 @@ def tell(line: str) -> None:
 
 def ending_of(content: bytes, reader: str) -> str:
     """The ending that a file of such content has."""
-    from attacked_readers import FAULTY, READERS
+    from attacked_readers import ALL
 
-    endings = (READERS | FAULTY)[reader].endings
+    endings = ALL[reader].endings
     beginnings = {b"PK": ".kiri", b"\x89PNG": ".png", b"\x93NUMPY": ".npy", b"{": ".json", b"[": ".json"}
     for beginning, ending in beginnings.items():
         if content.startswith(beginning) and ending in endings:
@@ -435,10 +437,10 @@ def fuzzed(reader: str, inputs: int, seed: int, folder: Path, jobs: int = 1) -> 
 
 
 def main() -> int:
-    from attacked_readers import FAULTY, READERS
+    from attacked_readers import ALL, READERS
 
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("readers", nargs="*", choices=[*READERS, *FAULTY, []])
+    parser.add_argument("readers", nargs="*", choices=[*ALL, []])
     parser.add_argument("--inputs", type=int, default=1000, help="files for each reader")
     parser.add_argument("--jobs", type=int, default=1, help="processes beside each other")
     parser.add_argument("--minutes", type=float, default=float("inf"), help="begin with no reader after these")

@@ -3,14 +3,15 @@
 Panels are what erosion by half a connector leaves apart, connectors the necks between them.  Each neck turns about a
 point of its narrowest section: the middle, or, beside a straight flank, 0.73 (sharp slit) to 0.56 widths (kerf of four
 widths) from it.  Panels keep their shape but for what bends around the necks.  The sheet is closed by Gauss-Newton on
-the gaps at all necks, with its mean turn prescribed.  It jams where a neck is stretched by more than it bears, or where
-panels are in each other by more than two necks in a row bear.  A panel narrower than a connector is read as two, and
-sheets with tabs, whose outline is cut in parts, are not read.
+the gaps at all necks, with its mean turn prescribed; panels that are in each other push each other out.  It jams where
+a neck is stretched by more than it bears, or where panels stay in each other by more than two necks in a row bear.  A
+panel narrower than a connector is read as two, and sheets with tabs, whose outline is cut in parts, are not read.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -50,7 +51,13 @@ SMALL = 15.0
 STEPS_DEG = (*np.arange(6.0, 168.0, 6.0).tolist(), *np.arange(168.0, 178.5, 1.0).tolist())
 #: Share by which what connectors bear is not known better.
 UNSURE = 0.05
-MOST_ITERATIONS, FINE_STEP = 25, 1e-7
+#: Corners that are deeper than this (in widths) in another panel are pushed out, and how often more are looked for.
+PUSHED, MOST_LOOKS = 0.1, 4
+#: Around a neck this share of the smaller panel's size is squeezed where both panels of it meet.
+SQUEEZED = 0.5
+#: A step on which panels meet is taken in so many parts.
+FINER = 8
+MOST_ITERATIONS, FINE_STEP = 25, 1e-5
 
 
 @dataclass(frozen=True)
@@ -267,6 +274,27 @@ def _is_straight(rim: BaseGeometry, end: complex, across: complex, width: float)
 # closing --------------------------------------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class Touch:
+    """A corner of one panel that is in another one.
+
+    Attributes
+    ----------
+    inner, outer : int
+        Panels.
+    point, foot : complex, mm
+        The corner, and the place of the outer panel's edge nearest to it, at rest.
+    normal : complex
+        Out of the outer panel there, at rest.
+    """
+
+    inner: int
+    outer: int
+    point: complex
+    foot: complex
+    normal: complex
+
+
 class _Model:
     """Gaps, turns and contacts of a sheet, and their slopes."""
 
@@ -331,7 +359,64 @@ class _Model:
         pairs = [pair for a, b in _neighbours(panels) for pair in ((a, b), (b, a))]
         return max((_depth(panels[inner], panels[outer]) for inner, outer in pairs), default=0.0)
 
-    def step(self, state: FloatArray, mean: float) -> FloatArray:
+    def touches(self, state: FloatArray) -> list[Touch]:
+        """The deepest corner of every panel that is in another one."""
+        panels, least = self.polygons(state), PUSHED * float(np.median(self.sheet.necks.width_mm))
+        necks: dict[tuple[int, int], list[complex]] = {}
+        places = self._moved(state, self.one).tolist()
+        for pair, place in zip(np.sort(self.sheet.necks.panels, axis=1).tolist(), places, strict=True):
+            necks.setdefault((pair[0], pair[1]), []).append(place)
+        found = []
+        for pair in _neighbours(panels):
+            for inner, outer in (pair, pair[::-1]):
+                line = _deepest(panels[inner], panels[outer])
+                if line is not None and abs(line[1] - line[0]) >= least and pair in necks:
+                    # What meets beside a neck is squeezed: flanks stop each other at their far ends.
+                    size = SQUEEZED * min(self.sheet.size_mm[[*pair]])
+                    beside = shapely.union_all([Point(at.real, at.imag).buffer(size) for at in necks[pair]])
+                    line = _deepest(*(shapely.difference(panels[panel], beside) for panel in (inner, outer)))
+                if line is None or abs(line[1] - line[0]) < least:
+                    continue
+                point, foot = (self._at_rest(state, *end) for end in zip((inner, outer), line, strict=True))
+                normal = (line[1] - line[0]) / abs(line[1] - line[0]) * np.exp(-1j * state[3 * outer + 2])
+                found.append(Touch(inner, outer, point, foot, complex(normal)))
+        return found
+
+    def is_near(self, state: FloatArray, touch: Touch) -> bool:
+        """Whether a corner is still at the panel that it touched."""
+        least = PUSHED * float(np.median(self.sheet.necks.width_mm))
+        corner = complex(self._at(state, np.array([touch.inner]), np.array([touch.point]))[0])
+        return bool(self._moved_panel(state, touch.outer).distance(Point(corner.real, corner.imag)) <= least)
+
+    def _at_rest(self, state: FloatArray, panel: int, place: complex) -> complex:
+        """Where a place on a moved panel is in the flat sheet."""
+        x, y, angle = state[3 * panel : 3 * panel + 3]
+        middle = complex(self.sheet.middle[panel])
+        return middle + (place - middle - complex(x, y)) * complex(np.exp(-1j * angle))
+
+    def pushes(self, state: FloatArray, touches: list[Touch]) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Freedoms (T, 6) of the panels of touches, slopes of their depths by them, and the depths (T,), mm."""
+        inner, outer = np.array([(one.inner, one.outer) for one in touches], dtype=np.intp).reshape(-1, 2).T
+        point, foot, normal = np.array([(one.point, one.foot, one.normal) for one in touches]).reshape(-1, 3).T
+        out = normal * np.exp(1j * state[2::3][outer])
+        corner = self._at(state, inner, point)
+        depth = ((self._at(state, outer, foot) - corner) * out.conjugate()).real
+        arms = [
+            corner - self.sheet.middle[panel] - state[0::3][panel] - 1j * state[1::3][panel] for panel in (outer, inner)
+        ]
+        slopes = np.stack(
+            [
+                value
+                for sign, arm in zip((1.0, -1.0), arms, strict=True)
+                for value in (sign * out.real, sign * out.imag, sign * (1j * arm * out.conjugate()).real)
+            ],
+            axis=1,
+        )
+        places = np.concatenate([3 * outer[:, None] + np.arange(3), 3 * inner[:, None] + np.arange(3)], axis=1)
+        inside = depth > 0.0
+        return places[inside], slopes[inside], depth[inside]
+
+    def step(self, state: FloatArray, mean: float, touches: list[Touch]) -> FloatArray:
         """One Gauss-Newton step towards least energy at a mean turn (radians)."""
         necks = self.sheet.necks
         places = np.concatenate([3 * self.one[:, None] + np.arange(3), 3 * self.other[:, None] + np.arange(3)], axis=1)
@@ -350,8 +435,11 @@ class _Model:
             (self.pulled[:, None] * slopes.imag, self.pulled * gaps.imag),
             (self.turned[:, None] * turning, self.turned * turns),
         ]
-        matrix = sparse.vstack([_matrix(places, slope, 3 * self.count) for slope, _ in parts])
-        off = np.concatenate([value for _, value in parts])
+        rows = [(places, *part) for part in parts]
+        if touches:  # an edge resists as the sheet itself does
+            rows.append(self.pushes(state, touches))
+        matrix = sparse.vstack([_matrix(at, slope, 3 * self.count) for at, slope, _ in rows])
+        off = np.concatenate([value for _, _, value in rows])
         kept = _matrix(places, self.sign[:, None] * turning / len(necks), 3 * self.count).sum(axis=0)
         missing = mean - float(np.mean(self.sign * turns))
         # A little of the diagonal keeps the whole in its place.
@@ -370,10 +458,16 @@ def closed_rigid(sheet: RigidSheet) -> RigidClosing:
     flat = np.zeros(3 * model.count)
     sign = min((1.0, -1.0), key=lambda one: model.overlap(_settled(model, flat, one * first)))
     state, before = flat, flat
-    rows = [(180.0, 0.0, 0.0)]
+    rows: list[tuple[float, float, float]] = [(180.0, 0.0, 0.0)]
+    touches: list[Touch] = []
     for turn, last, earlier in zip(STEPS_DEG, (0.0, *STEPS_DEG), (0.0, 0.0, *STEPS_DEG), strict=False):
         ahead = (turn - last) / (last - earlier) if last > earlier else 0.0
-        before, state = state, _settled(model, state + ahead * (state - before), sign * math.radians(turn))
+        mean, start, seen = sign * math.radians(turn), state + ahead * (state - before), touches
+        before, (state, touches) = state, _pushed(model, start, mean, touches)
+        if len(touches) > len(seen) and turn - last > 2.0:  # a corner leaves by the edge that it came in by
+            state, touches = before, seen
+            for part in np.linspace(math.radians(last), math.radians(turn), FINER + 1)[1:].tolist():
+                state, touches = _pushed(model, state, sign * part, touches)
         stretch = float((np.abs(model.gaps(state)) / widths).max())
         rows.append((180.0 - turn, stretch, model.depth(state) / float(np.median(widths))))
         if max(stretch / TOLERATED, rows[-1][2] / (2.0 * TOLERATED)) > 1.0 + UNSURE:
@@ -394,10 +488,22 @@ def _passed(phi_deg: FloatArray, share: FloatArray, least: float) -> float:
     return float(phi_deg[last - 1] + part * (phi_deg[last] - phi_deg[last - 1]))
 
 
-def _settled(model: _Model, state: FloatArray, mean: float) -> FloatArray:
+def _pushed(model: _Model, state: FloatArray, mean: float, touches: list[Touch]) -> tuple[FloatArray, list[Touch]]:
+    """The state of least energy at a mean turn (radians), panels pushed out of each other, and where they touch."""
+    for _ in range(MOST_LOOKS):
+        state = _settled(model, state, mean, touches)
+        known = {(one.inner, one.outer): one for one in touches}
+        found = {(one.inner, one.outer): one for one in model.touches(state)}
+        if found.keys() <= known.keys():
+            break
+        touches = list((known | found).values())
+    return state, [one for one in touches if model.is_near(state, one)]
+
+
+def _settled(model: _Model, state: FloatArray, mean: float, touches: Sequence[Touch] = ()) -> FloatArray:
     """The state of least energy at a mean turn (radians)."""
     for _ in range(MOST_ITERATIONS):
-        step = model.step(state, mean)
+        step = model.step(state, mean, list(touches))
         largest = float(np.abs(step[2::3]).max())
         state = state + step * min(1.0, 0.3 / largest if largest > 0.0 else 1.0)
         if largest < FINE_STEP:
@@ -418,9 +524,19 @@ def _neighbours(panels: Areas, distance: float = 0.0) -> list[tuple[int, int]]:
 
 def _depth(inner: BaseGeometry, outer: BaseGeometry) -> float:
     """How deep (mm) the deepest corner of one panel is in another one."""
+    line = _deepest(inner, outer)
+    return 0.0 if line is None else abs(line[1] - line[0])
+
+
+def _deepest(inner: BaseGeometry, outer: BaseGeometry) -> tuple[complex, complex] | None:
+    """The deepest corner of one panel in another one, and the place of its edge nearest to it."""
     corners = shapely.get_coordinates(inner)
     inside = shapely.points(corners[shapely.contains_xy(outer, *corners.T)])
-    return float(shapely.distance(inside, shapely.boundary(outer)).max()) if len(inside) else 0.0
+    if not len(inside):
+        return None
+    lines = shapely.shortest_line(inside, shapely.boundary(outer))
+    one, other = shapely.get_coordinates(lines[np.argmax(shapely.length(lines))]) @ (1.0, 1j)
+    return complex(one), complex(other)
 
 
 def _colours(pairs: IntArray, count: int) -> FloatArray:

@@ -65,11 +65,11 @@ class WatchedTools(WatchedSession):
         self.open("open a large project in a large window", "large.kiri", MANY)
         self.step("widen the gallery to see all its cards", self.widen, lambda: not view.cards.pending)
         self.step("scroll through the wide gallery", self.look_through, lambda: not view.cards.pending)
-        self.window.columns.splitter.setSizes([560, 1400, 600])
+        self.window.pages.splitter.setSizes([560, 1400, 600])
         self.window.session.history.mark_saved()
 
     def widen(self) -> None:
-        self.window.columns.splitter.setSizes([340, WINDOW[0] - 340 - ALL_CARDS, ALL_CARDS])
+        self.window.pages.splitter.setSizes([340, WINDOW[0] - 340 - ALL_CARDS, ALL_CARDS])
 
     def many_designs(self) -> None:
         """128 designs, undone and redone."""

@@ -40,7 +40,7 @@ class CheckedFile(Checked):
     def __repr__(self) -> str:
         told = "sound" if self.sound else "not sound"
         if self.verdict is not None:
-            told += f", {self.verdict.level.words}"
+            told += f", {self.verdict.level_words}"
         return f"<CheckedFile {self.report.path.name}: {told}{'' if self.ok else ': ' + ' '.join(self.problems)}>"
 
 

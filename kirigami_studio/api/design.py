@@ -33,6 +33,7 @@ from kirigami_studio.api.pictures import cuts_picture, states_picture
 from kirigami_studio.api.simulation import Simulation
 from kirigami_studio.api.target import Target, TargetLike, load_target
 from kirigami_studio.assembly.pieces import Assembly
+from kirigami_studio.assembly.posed_pieces import PosedPieces
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.feasibility import Feasibility, feasibility_of_many
 from kirigami_studio.evaluate.mask_siou import mask_siou
@@ -48,7 +49,14 @@ from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
-from kirigami_studio.foundation.errors import ExportError, KirigamiError, ProjectError, RatioError, UsageError
+from kirigami_studio.foundation.errors import (
+    ExportError,
+    FabricationError,
+    KirigamiError,
+    ProjectError,
+    RatioError,
+    UsageError,
+)
 from kirigami_studio.foundation.paper import MASK_SIZE
 from kirigami_studio.lattice import sheet as lattice_sheet
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
@@ -70,10 +78,12 @@ from kirigami_studio.studio.making import (
     Output,
     Planned,
     chosen_candidate,
+    has_pieces,
     judged,
     picture_job,
     pieces_of,
     planned,
+    posed_pieces,
     written,
     written_pieces,
 )
@@ -530,7 +540,19 @@ class Design:
         rows, columns = self.grid
         figures = [f"IoU {self.iou:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
         details = "  ·  ".join(figures if self.feasible else [*figures, "not feasible"])
-        return states_picture(self.posed, self.target.rings, f"{self.name}  ·  {self.target.name}", details)
+        heading = f"{self.name}  ·  {self.target.name}"
+        return states_picture(self.posed, self.target.rings, heading, details, self._small_pieces)
+
+    @property
+    def _small_pieces(self) -> PosedPieces | None:
+        """Its pieces on pins, or its tiles on cloth, as small pictures show them; None for panels."""
+        if not has_pieces(self.document.fabrication):
+            return None
+        try:
+            found = posed_pieces(CutRequest.of(self.document))
+        except (FabricationError, UsageError):  # which making them explains
+            return None
+        return None if found is None else found.small
 
 
 def score(ratios: SheetLike, target: TargetLike, *, phi: float = 0.0) -> Score:

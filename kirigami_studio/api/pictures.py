@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from kirigami_studio.assembly.posed_pieces import PosedPieces
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.picture import PANEL, PANEL_EDGE, TARGET_EDGE, hexadecimal
 from kirigami_studio.export.svg import NAMESPACE, decimals, path_data
@@ -21,7 +22,13 @@ from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 #: Letters and lines on white or black paper; the curve; where something is too much.
 GREY, LINE, ALARM = "#7a7f87", "#3b82c4", "#e5484d"
 #: Layers of cuts as they are seen on both; files have the colours that machines know.
-LAYERS = {Layer.RELIEF: "#d9730d", Layer.SLITS: ALARM, Layer.EDGE_SLITS: "#30a46c", Layer.OUTLINE: LINE}
+LAYERS = {
+    Layer.RELIEF: "#d9730d",
+    Layer.SLITS: ALARM,
+    Layer.EDGE_SLITS: "#30a46c",
+    Layer.HOLES: LINE,
+    Layer.OUTLINE: LINE,
+}
 PANEL_FILL, PANEL_LINE = hexadecimal(PANEL), hexadecimal(PANEL_EDGE)
 TARGET = hexadecimal(TARGET_EDGE)
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif"
@@ -121,11 +128,17 @@ def target_picture(shape: ShapeRings, name: str) -> str:
     return canvas.svg
 
 
-def states_picture(design: PosedDesign, target: ShapeRings, heading: str, details: str = "") -> str:
-    """A sheet flat, half open and at its angle, over its target (L, 2) with its holes, in one scale."""
+def states_picture(
+    design: PosedDesign,
+    target: ShapeRings,
+    heading: str,
+    details: str = "",
+    pieces: PosedPieces | None = None,
+) -> str:
+    """A sheet, or its pieces, flat, half open and at its angle over its target, in one scale."""
     end = design.phi_target
     angles = (math.pi, 0.5 * (math.pi + end), end)
-    parts = [design.parts(phi) for phi in angles]
+    parts = [design.parts(phi) if pieces is None else pieces.outlines(phi) for phi in angles]
     clouds = [np.concatenate(rings) for rings in parts]
     clouds[-1] = np.concatenate([clouds[-1], *as_rings(target)])
     sizes = np.array([np.ptp(cloud, axis=0) for cloud in clouds])
@@ -139,7 +152,11 @@ def states_picture(design: PosedDesign, target: ShapeRings, heading: str, detail
     left = float(MARGIN)
     for number, (phi, rings, cloud, width) in enumerate(zip(angles, parts, clouds, widths.tolist(), strict=True)):
         placing = Placing.of(cloud, scale, (left + width / 2, MARGIN + GAP + height / 2))
-        _sheet(canvas, placing, rings, target if number == 2 else None)
+        wanted = target if number == 2 else None
+        if pieces is None:
+            _sheet(canvas, placing, rings, wanted)
+        else:
+            _pieces(canvas, placing, pieces, rings, wanted)
         words = "flat" if number == 0 else f"{math.degrees(phi):.0f}°"
         canvas.text(left + width / 2, height + MARGIN + GAP + 16, words, "middle")
         left += width + GAP
@@ -282,6 +299,17 @@ def _sheet(canvas: SvgPicture, placing: Placing, rings: Sequence[FloatArray], ta
     line = min(max(0.05 * math.sqrt(float(extent.prod()) / len(drawn)), 0.3), 0.9)
     canvas.rings(drawn, fill=PANEL_FILL, stroke=PANEL_LINE, stroke_width=f"{line:.2f}")
     _target(canvas, wanted, 1.6)
+
+
+def _pieces(
+    canvas: SvgPicture, placing: Placing, pieces: PosedPieces, rings: Sequence[FloatArray], target: ShapeRings
+) -> None:
+    """Pieces layer by layer, and the outline of their target on top."""
+    for place, layer in enumerate(pieces.layers):
+        face = hexadecimal(pieces.look.layer(place, len(pieces.layers)))
+        drawn = [placing(rings[number]) for number in layer]
+        canvas.rings(drawn, fill=face, stroke=hexadecimal(pieces.look.line), stroke_width="0.4")
+    _target(canvas, [placing(ring) for ring in as_rings(target)], 1.6)
 
 
 def _target(canvas: SvgPicture, rings: Sequence[FloatArray], width: float, filled: str = "0") -> None:

@@ -165,8 +165,13 @@ class BackedSheet:
         ]
         return Jig(cut, float(np.clip(min(room, default=FRAME_MM), 2.0 * REGISTRATION_MM, FRAME_MM)))
 
-    def board(self, jig: Jig) -> Board:
-        """Lay tiles into a frame with registration holes.
+    @property
+    def between_mm(self) -> float:
+        """Distance between the edges of two tiles whose panels meet."""
+        return 2.0 * self.tile_sizes.inset_mm(self.plan.kerf_mm)
+
+    def board(self, jig: Jig, assembly: Assembly | None = None) -> Board:
+        """Lay tiles, as they are or as pieces of another assembly, into a frame with registration holes.
 
         The opening of the frame is the sheet's outline, a gap larger.  Of four holes, one in each corner, one is out of
         line, so that board and hinge layer fit one way only.
@@ -190,10 +195,11 @@ class BackedSheet:
             np.array([2.0 * jig.frame_mm, inset]),
             min(LABEL_SHARE * jig.frame_mm, LARGEST_LABEL_MM),
         )
+        tiles = (assembly or self.assembly).pieces
         flat = self.assembly.poses(math.pi)[:, :2] + self.shift - low
-        kissed = frozenset(piece.id for piece in self.assembly.pieces) if jig.cut is BoardCut.KISS else frozenset[str]()
+        kissed = frozenset(piece.id for piece in tiles) if jig.cut is BoardCut.KISS else frozenset[str]()
         places = np.concatenate([flat, np.zeros((1, 2))])
-        return Board((*self.assembly.pieces, frame), places, -low, kissed)
+        return Board((*tiles, frame), places, -low, kissed)
 
     @property
     def missing(self) -> int:

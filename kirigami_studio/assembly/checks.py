@@ -16,6 +16,7 @@ from kirigami_studio.assembly.nesting import smallest_rectangle
 from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.pinned import PinnedPlan
+from kirigami_studio.assembly.shaping import united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.lattice.deployment import Deployment
@@ -98,12 +99,15 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
     phi = assembly.phi_target
     bodies = [body_of(piece) for piece in assembly.pieces]
     overlap, worst_phi = largest_overlap(plan, bodies, np.linspace(math.pi, phi, angles).tolist())
-    opened, flat = (shapely.union_all(placed_bodies(assembly, bodies, angle)) for angle in (phi, math.pi))
+    opened, flat = (united(*placed_bodies(assembly, bodies, angle)) for angle in (phi, math.pi))
     walls = [wall_mm(piece, body) for piece, body in zip(assembly.pieces, bodies, strict=True)]
-    necks = [
-        0.0 if piece.id in plan.broken else neck_mm(piece, body, options.neck_mm, 2.0 * options.keep_mm)
-        for piece, body in zip(assembly.pieces, bodies, strict=True)
-    ]
+    necks: list[float] = []
+    widest = 0.999 * 2.0 * options.keep_mm
+    for piece, body in zip(assembly.pieces, bodies, strict=True):
+        whole = piece.id not in plan.broken
+        necks.append(neck_mm(piece, body, options.neck_mm, widest) if whole else 0.0)
+        if necks[-1] >= options.neck_mm:
+            widest = min(widest, necks[-1])  # wider ones need not be measured
     panels = shapely.area(shapely.polygons(assembly.deployment.panels(math.pi).reshape(-1, 4, 2) * assembly.cell_mm))
     kept = shapely.area(bodies) / panels
     apart, pair = pins_apart(assembly.deployment, [hinge.node for hinge in assembly.hinges], assembly.cell_mm, phi)
@@ -276,9 +280,9 @@ def neck_mm(piece: Piece, body: Polygon, least: float, most: float) -> float:
         core = shapely.buffer(body, -0.5 * width)
         return any(np.all(shapely.contains(part, centres)) for part in shapely.get_parts(core))
 
-    low, high = (least, 0.999 * most) if holds(least) else (0.0, least)
-    if holds(high):
-        return high
+    if holds(most):
+        return most
+    low, high = (least, most) if least < most and holds(least) else (0.0, min(least, most))
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if holds(middle) else (low, middle)

@@ -31,6 +31,8 @@ MOST_PLACES = 6
 STEP_MM = 1.0
 #: Distance of holes with their walls, and of tabs, from the edge where parts meet: outlines are as exact, mm.
 OFF_EDGE_MM = 0.05
+#: Edges of tiles lie farther apart than their gap by this, mm, where the cuts between them have bows.
+BOWED_MM = 2.0
 #: Chords of a quarter circle round holes; the walls are as much thicker as chords miss it.
 CHORDS = 32
 NORTH, SOUTH = "N", "S"
@@ -93,7 +95,7 @@ class Site:
     where : (3, 2) float, mm
         Where the middle is in that state, and where those of both parts are in the other one.
     rows : (int, int)
-        Rows of their panels: neighbours along a side have poles that differ.
+        Rows of their panels, or others of panels in one row: where they differ, poles do.
     apart_mm : float
         How far both middles are apart in the other state.
     """
@@ -267,19 +269,42 @@ def held(plan: PinnedPlan, options: HoldOptions) -> HeldPlaces:
     if options.kind is HoldKind.NONE:
         return HeldPlaces()
     sizes = plan.options
-    found: list[Lock | Meeting] = [one for one in meetings(plan) if one.state in options.when.states]
+    gap_mm = sizes.clearance_mm if sizes.in_one_plane else sizes.side_mm
+    found: list[Lock | Meeting] = [
+        one for one in meetings(plan.assembly, gap_mm, sizes.in_one_plane) if one.state in options.when.states
+    ]
     met = {one.state for one in found}
-    if options.kind in (HoldKind.MAGNETS, HoldKind.EYELETS):
+    if options.kind in (HoldKind.MAGNETS, HoldKind.EYELETS) and not sizes.in_one_plane:
         for state in options.when.states:
             found += locks(plan, state, options.hole_mm, options.head_mm, options.wall_mm)
     reach = 0.5 * options.hole_mm + options.wall_mm if options.hole_mm else 0.0
-    clear = max(0.5 * (sizes.head_mm + options.head_mm), 0.5 * sizes.pin_mm + reach) - reach
+    if sizes.in_one_plane:  # joints are in the ears
+        clear = 0.5 * sizes.ear_mm + sizes.clearance_mm
+    else:
+        clear = max(0.5 * (sizes.head_mm + options.head_mm), 0.5 * sizes.pin_mm + reach) - reach
     free = {}
     for piece in plan.assembly.pieces:
         pins = shapely.buffer([Point(hole.centre) for hole in piece.holes], clear, quad_segs=CHORDS)
         free[piece.id] = body_of(piece).difference(shapely.union_all(pins))
-    places = chosen(_sites(plan.assembly, found), free, options, sizes.side_mm)
+    places = chosen(_sites(plan.assembly, found), free, options, gap_mm)
     return HeldPlaces(places, missing(places, options, met))
+
+
+def held_tiles(assembly: Assembly, options: HoldOptions, gap_mm: float) -> HeldPlaces:
+    """Choose places that hold tiles, which are nowhere joined by pins.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    options : HoldOptions
+    gap_mm : float
+        Between the edges of two tiles that meet.
+    """
+    if options.kind is HoldKind.NONE:
+        return HeldPlaces()
+    found = [one for one in meetings(assembly, gap_mm + BOWED_MM, True) if one.state in options.when.states]
+    places = chosen(_sites(assembly, found), {one.id: body_of(one) for one in assembly.pieces}, options, gap_mm)
+    return HeldPlaces(places, missing(places, options, {one.state for one in found}))
 
 
 def missing(places: Sequence[HoldPlace], options: HoldOptions, met: Iterable[HeldState]) -> tuple[Problem, ...]:
@@ -309,6 +334,7 @@ def _sites(assembly: Assembly, found: Iterable[Lock | Meeting]) -> list[Site]:
         there = [_carried(poses[other][name], at) for name, at in zip(one.pieces, middle, strict=True)]
         where = np.array([_carried(poses[one.state][one.pieces[0]], middle[0]), *there])
         rows = (assembly.by_id[one.pieces[0]].panel[0], assembly.by_id[one.pieces[1]].panel[0])
+        rows = rows if rows[0] != rows[1] else (0, 1)
         sites.append(Site(one.pieces, one.state, edges, middle, where, rows, math.dist(*there)))
     return sites
 

@@ -15,6 +15,7 @@ import shapely
 
 from kirigami_studio.assembly.checks import body_of, placed_bodies
 from kirigami_studio.assembly.motion import discs
+from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.pinned import PinnedPlan
 from kirigami_studio.assembly.rim_pieces import roomiest_place
 from kirigami_studio.evaluate.boundary import as_plane, as_points
@@ -31,7 +32,7 @@ BESIDE_MM = 0.02
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Meeting:
-    """Edges of two pieces of one layer that touch along a length in one end state.
+    """Edges of two pieces of one plane that touch along a length in one end state.
 
     In the other state, the same two may touch, but at other places of their edges.
 
@@ -75,16 +76,23 @@ class Lock:
     state: HeldState
 
 
-def meetings(plan: PinnedPlan) -> tuple[Meeting, ...]:
-    """Meetings in both end states, the longest first; voids that stay open have none."""
-    assembly = plan.assembly
+def meetings(assembly: Assembly, gap_mm: float, in_one_plane: bool = False) -> tuple[Meeting, ...]:
+    """Meetings in both end states, the longest first; voids that stay open have none.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    gap_mm : float
+        Between edges that meet.
+    in_one_plane : bool
+        Whether neighbours, which hang on each other, meet as well; those of pinned pieces lie on each other.
+    """
     ends = ((HeldState.OPEN, assembly.phi_target), (HeldState.FLAT, math.pi))
-    found = [one for state, phi in ends for one in _meetings_at(plan, state, phi)]
+    found = [one for state, phi in ends for one in _meetings_at(assembly, gap_mm, in_one_plane, state, phi)]
     return tuple(sorted(found, key=lambda one: -one.length_mm))
 
 
-def _meetings_at(plan: PinnedPlan, state: HeldState, phi: float) -> list[Meeting]:
-    assembly = plan.assembly
+def _meetings_at(assembly: Assembly, gap_mm: float, in_one_plane: bool, state: HeldState, phi: float) -> list[Meeting]:
     tables = assembly.deployment.topology
     voids = as_plane(assembly.deployment.voids(phi)) * assembly.cell_mm
     pieces = {piece.panel: (number, piece) for number, piece in enumerate(assembly.pieces)}
@@ -104,14 +112,19 @@ def _meetings_at(plan: PinnedPlan, state: HeldState, phi: float) -> list[Meeting
         if max(abs(((corner - p0) / direction).imag) for corner in (p1, p2, p3)) > CLOSED_MM:
             continue
         # Panels across the void from each other are of one layer.
-        for first, second in (((row, column), (row + 1, column + 1)), ((row, column + 1), (row + 1, column))):
+        round_void = tuple(sides)
+        pairs = [(round_void[0], round_void[2]), (round_void[1], round_void[3])]
+        pairs += zip(round_void, (*round_void[1:], round_void[0]), strict=True) if in_one_plane else ()
+        for first, second in pairs:
+            if first not in pieces or second not in pieces:  # panels that are cut away, or have no tile
+                continue
             low, high = _shared_interval(sides[first], sides[second], p0, direction)
             if high - low < LEAST_LENGTH_MM:
                 continue
             line = shapely.LineString(as_points(p0 + direction * np.array([low, high])))
             (one, a), (other, b) = pieces[first], pieces[second]
             for index in (one, other):
-                near = placed[index].boundary.buffer(0.5 * plan.options.side_mm + BESIDE_MM)
+                near = placed[index].boundary.buffer(0.5 * gap_mm + BESIDE_MM)
                 line = line.intersection(near)
             for part in shapely.get_parts(line):
                 if part.length >= LEAST_LENGTH_MM:

@@ -26,8 +26,8 @@ from kirigami_studio.lattice.deployment import Deployment, check_phi
 
 GeometryArray = npt.NDArray[np.object_]
 
-#: Vertices of a polygon that stands for a disc.
-DISC = 64
+#: Polygons in discs miss them by this at most, mm.
+ROUNDNESS_MM = 0.01
 #: A pin is needed if its conditions are implied by others to less than this share.
 NEEDED = 1e-9
 
@@ -203,8 +203,14 @@ def polygons(corners: ComplexArray) -> GeometryArray:
 
 def discs(centres: ComplexArray, radius: FloatArray | float) -> GeometryArray:
     """Polygons (K,) in circles about ``centres`` (K,), with vertices on them."""
-    rim = np.broadcast_to(radius, centres.shape)[:, None] * np.exp(2j * math.pi * np.arange(DISC) / DISC)
-    return polygons(centres[:, None] + rim)
+    radii = np.broadcast_to(radius, centres.shape)
+    return polygons(centres[:, None] + radii[:, None] * _corners(float(radii.max(initial=0.0)), ROUNDNESS_MM))
+
+
+def _corners(radius: float, tolerance: float) -> ComplexArray:
+    """Corners (N,) on the unit circle; sides of as many miss a circle of this radius by the tolerance at most."""
+    count = 4 * max(4, math.ceil(0.25 * math.pi * math.sqrt(radius / (2.0 * tolerance))))
+    return np.exp(2j * math.pi * np.arange(count) / count)
 
 
 def swept_discs(
@@ -232,9 +238,9 @@ def swept_discs(
     reach = np.abs(drifts) + radius
     largest = np.abs(turns).max(initial=0.0)
     # The vertices of the outer arc lie outside of it, by reach (1 / cos(half a step) - 1), or reach step^2 / 8.
-    steps = 2 ** np.ceil(np.log2(np.maximum(largest * np.sqrt(reach / (8.0 * tolerance)), 2.0))).astype(np.int64)
-    size = max(DISC, 4 * math.ceil(0.25 * math.pi * math.sqrt(radius.max(initial=0.0) / (2.0 * tolerance))))
-    cap = radius[:, None] / math.cos(math.pi / size) * np.exp(2j * math.pi * np.arange(size) / size)
+    steps = 4 * np.ceil(0.25 * np.maximum(largest * np.sqrt(reach / (8.0 * tolerance)), 2.0)).astype(np.int64)
+    corners = _corners(float(radius.max(initial=0.0)), tolerance)
+    cap = radius[:, None] / math.cos(math.pi / len(corners)) * corners
     ends = centres + (np.exp(1j * turns) - 1.0) * drifts
     caps = [polygons(place[:, None] + cap) for place in (centres, ends)]
     for count in np.unique(steps):
@@ -249,9 +255,9 @@ def swept_discs(
 
 
 def swept_hulls(
-    corners: ComplexArray, drifts: ComplexArray, turn: float, tolerance: float, window: tuple[float, ...]
+    corners: ComplexArray, drifts: ComplexArray, turn: float, tolerance: float, windows: FloatArray
 ) -> GeometryArray:
-    """Convex areas that convex polygons sweep along arcs, as far as they come near a window.
+    """Convex areas that convex polygons sweep along arcs, as far as they come near one of some windows.
 
     Grown by ``tolerance`` they contain the exact ones.
 
@@ -264,23 +270,32 @@ def swept_hulls(
         As for :func:`swept_discs`.
     tolerance : float, mm
         Sagitta of the chords that stand for the arcs.
-    window : (left, bottom, right, top), mm
+    windows : (W, 4) float, mm
+        Left, bottom, right and top of each.
     """
     if np.all(drifts == drifts[:, :1]):  # unturned: all corners of a polygon move alike
         drifts = drifts[:, :1]
-    farthest = float(np.abs(drifts).max(initial=0.0))
-    steps = max(2, math.ceil(abs(turn) * math.sqrt(farthest / (8.0 * tolerance))))
-    shifts = (np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0)[:, None] * drifts[:, None, :]
-    near = np.ones((len(corners), steps), dtype=bool)
-    for corner, shift, low, high in (
-        (corners.real, shifts.real, window[0], window[2]),
-        (corners.imag, shifts.imag, window[1], window[3]),
-    ):
-        least, most = shift.min(axis=2), shift.max(axis=2)
-        near &= corner.max(axis=1)[:, None] + np.maximum(most[:, :-1], most[:, 1:]) >= low
-        near &= corner.min(axis=1)[:, None] + np.minimum(least[:, :-1], least[:, 1:]) <= high
-    polygon, step = np.nonzero(near)
-    both = [corners[polygon] + shifts[polygon, step + end] for end in (0, 1)]
+    needed = np.maximum(np.ceil(abs(turn) * np.sqrt(np.abs(drifts).max(axis=1) / (8.0 * tolerance))), 2.0)
+    steps = 2 ** np.ceil(np.log2(needed)).astype(np.int64)
+    both = [
+        _steps_near(corners[steps == count], drifts[steps == count], turn, int(count), windows)
+        for count in np.unique(steps)
+    ]
     # Hulls of lines, which are quicker to make than multipoints.
-    lines = shapely.linestrings(as_points(np.concatenate(both, axis=1)))
+    lines = shapely.linestrings(as_points(np.concatenate(both))) if both else []
     return np.asarray(shapely.convex_hull(lines), dtype=object).reshape(-1)
+
+
+def _steps_near(
+    corners: ComplexArray, drifts: ComplexArray, turn: float, steps: int, windows: FloatArray
+) -> ComplexArray:
+    """Corners (N, 2 K) of polygons before and after those of so many steps that come near windows."""
+    shifts = (np.exp(1j * turn * np.arange(steps + 1) / steps) - 1.0)[:, None] * drifts[:, None, :]
+    near = np.ones((len(windows), len(corners), steps), dtype=bool)
+    for axis, (corner, shift) in enumerate(((corners.real, shifts.real), (corners.imag, shifts.imag))):
+        least, most = shift.min(axis=2), shift.max(axis=2)
+        high = corner.max(axis=1)[:, None] + np.maximum(most[:, :-1], most[:, 1:])
+        low = corner.min(axis=1)[:, None] + np.minimum(least[:, :-1], least[:, 1:])
+        near &= (high >= windows[:, axis, None, None]) & (low <= windows[:, axis + 2, None, None])
+    polygon, step = np.nonzero(near.any(axis=0))
+    return np.concatenate([corners[polygon] + shifts[polygon, step + end] for end in (0, 1)], axis=1)

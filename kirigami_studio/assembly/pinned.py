@@ -14,7 +14,7 @@ from kirigami_studio.assembly.motion import LayerMotion
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
 from kirigami_studio.assembly.rim_pieces import EndState, extend_to, roomiest_place, round_off, trim_to
-from kirigami_studio.assembly.shaping import Shaping
+from kirigami_studio.assembly.shaping import Shaping, less
 from kirigami_studio.evaluate.boundary import as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
@@ -24,6 +24,8 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
 
+#: How much of what the flat outline can spare pieces may stick out of it: the rest is for gaps that nothing fills.
+MOST_BEYOND = 0.7
 #: Width of a character of a label, in its heights.
 CHARACTER = 0.7
 
@@ -110,7 +112,7 @@ def pinned(
         spare = (1.0 - options.least_flat) * flat.area
         spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
         trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
-        spare -= extend_to(shaping, opened, closed, spare)
+        extend_to(shaping, opened, closed, MOST_BEYOND * spare)
         extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
         round_off(shaping, (opened, closed))
     assembly = assembled(shaping, deployment, cell_mm, phi)
@@ -160,7 +162,7 @@ def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: flo
         pins = as_points(motion.corners[index]) - origins[index]
         hinged = motion.hinged[index]
         drills = shapely.buffer(shapely.points(pins[hinged]), 0.5 * options.pin_mm)
-        drilled = shape.difference(shapely.union_all(drills))
+        drilled = less(shape, shapely.union_all(drills))
         place, room = roomiest_place(drilled)
         pieces.append(
             Piece(

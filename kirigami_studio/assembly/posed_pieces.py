@@ -21,6 +21,7 @@ from kirigami_studio.fabricate.fastener import Fastener
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
+    from kirigami_studio.assembly.backed import BackedSheet
     from kirigami_studio.assembly.holding import HoldPlace
     from kirigami_studio.assembly.pieces import Assembly, Piece
     from kirigami_studio.assembly.pinned import PinnedPlan
@@ -56,6 +57,8 @@ LOWEST, LINE, NUMBER = 0.86, 0.52, 0.25
 HEAD_RIM, GLINT = 0.62, 1.28
 #: Shadows fall so far, in thicknesses of a layer.
 FALL = 0.9
+#: Number of the layer under tiles, which are layer 2.
+CLOTH = 3
 #: Small pictures, and drawings, leave out what is finer than these shares of a sheet's width.
 SMALL, FINE = 1.0 / 800.0, 1.0 / 8000.0
 
@@ -66,6 +69,11 @@ def shaded(colour: Shade, light: float) -> Shade:
     return red, green, blue
 
 
+def face_of(material: Material) -> Shade:
+    """Colour of sheets of a material."""
+    return FACES.get(material.key.split("-")[0], USUAL_FACE)
+
+
 @dataclass(frozen=True, slots=True)
 class PieceLook:
     """Colours of pieces and of their pins."""
@@ -73,17 +81,20 @@ class PieceLook:
     face: Shade = USUAL_FACE
     head: Shade = BRASS
     thickness_mm: float = 3.0  #: of a layer, which decides how far its shadow falls
+    under: Shade | None = None  #: the lowest layer where it is of another material
 
     @classmethod
     def of(cls, material: Material, fastener: Fastener, *, in_one_plane: bool = False) -> PieceLook:
         """The look of pieces of a material; those in one plane have pins of it, and cast no shadows."""
-        face = FACES.get(material.key.split("-")[0], USUAL_FACE)
+        face = face_of(material)
         if in_one_plane:
             return cls(face, face, 0.0)
         return cls(face, STEEL if fastener in STEEL_PINS else BRASS, material.thickness_mm)
 
     def layer(self, place: int, count: int) -> Shade:
         """Face of one of so many layers, the lowest being at 0."""
+        if self.under is not None:
+            return self.face if place else self.under
         return shaded(self.face, 1.0 if place + 1 >= count else LOWEST + (1.0 - LOWEST) * place / (count - 1))
 
     @property
@@ -106,6 +117,7 @@ class PosedPieces:
     look: PieceLook
     head_mm: float = 0.0  #: diameter of the heads of pins; 0 for none
     holds: tuple[HoldPlace, ...] = ()  #: places that hold it in its end states
+    grips: tuple[int, int] | None = None  #: panels to hold and to pull, row by row
 
     @classmethod
     def of(
@@ -120,6 +132,40 @@ class PosedPieces:
         design = PosedDesign(assembly.deployment, plan.pose, assembly.phi_target)
         look = PieceLook.of(material, fastener, in_one_plane=options.in_one_plane)
         return cls(assembly, design, look, options.pin_mm if options.in_one_plane else options.head_mm, holds)
+
+    @classmethod
+    def on_cloth(
+        cls,
+        sheet: BackedSheet,
+        tiles: Assembly,
+        design: PosedDesign,
+        board: Material,
+        holds: tuple[HoldPlace, ...] = (),
+    ) -> PosedPieces:
+        """Tiles of a board on the panels of their hinge layer.
+
+        Parameters
+        ----------
+        sheet : BackedSheet
+        tiles : Assembly
+            Of that sheet, with their holes.
+        design : PosedDesign
+            Of the sheet that is cut.
+        board : Material
+        holds : tuple of HoldPlace
+        """
+        from kirigami_studio.assembly.pieces import Piece
+        from kirigami_studio.fabricate.cut_panels import cut_panels
+
+        panels, columns = cut_panels(sheet.plan).outlines, sheet.deployment.topology.columns + 1
+        corners = sheet.cell_mm * sheet.deployment.panels(np.pi) + sheet.shift
+        rings = zip(panels.panel.tolist(), panels.split(panels.points), strict=True)
+        cloth = [
+            Piece(f"H{number}", CLOTH, divmod(number, columns), ring - corners[divmod(number, columns)].mean(axis=0))
+            for number, ring in rings
+        ]
+        look = replace(PieceLook.of(board, Fastener.BRAD), under=face_of(sheet.plan.material))
+        return cls(replace(tiles, pieces=(*cloth, *tiles.pieces)), design, look, 0.0, holds)
 
     @property
     def mm_per_world(self) -> float:

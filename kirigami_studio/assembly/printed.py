@@ -6,7 +6,7 @@ Outlines are on a grid of a tenth of a micrometre: no two vertices fall together
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.backed import BackedSheet
+from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.solids import (
     LAYER_MM,
@@ -30,6 +31,7 @@ from kirigami_studio.assembly.solids import (
 from kirigami_studio.fabricate.checks import finished_pieces
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.fastener import PRINTED_WALL_MM, PrintedPins
+from kirigami_studio.fabricate.hold import HoldKind
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
@@ -268,7 +270,12 @@ def cap_solids(count: int, thickness_mm: float, pins: PrintedPins) -> tuple[Soli
 
 
 def pinned_solids(
-    assembly: Assembly, thickness_mm: float, pins: PrintedPins, seams: Collection[int] = ()
+    assembly: Assembly,
+    thickness_mm: float,
+    pins: PrintedPins,
+    seams: Collection[int] = (),
+    holds: Sequence[HoldPlace] = (),
+    pocket_mm: float = 0.0,
 ) -> tuple[Solid, ...]:
     """Pieces in one plane, in the flat sheet, that turn on pins printed with them.
 
@@ -279,6 +286,10 @@ def pinned_solids(
     pins : PrintedPins
     seams : collection of int
         Nodes whose pins have no foot, for their rings are printed elsewhere.
+    holds : sequence of HoldPlace
+        Places that hold the sheet, whose holes are left out.
+    pocket_mm : float
+        Depth of those for magnets, from the upper face; they go through where no floor would be left.
 
     Raises
     ------
@@ -290,6 +301,13 @@ def pinned_solids(
     for hinge in assembly.hinges:
         for name, at in zip(hinge.pieces, hinge.at, strict=True):
             joints[name].append((at, hinge.node in seams))
+    floor = thickness_mm - pocket_mm
+    drills: dict[str, list[Manifold]] = {piece.id: [] for piece in assembly.pieces}
+    for place in (one for one in holds if one.hole_mm):
+        low = floor if place.kind is HoldKind.MAGNETS and floor >= LEAST_WEB_MM else -thickness_mm
+        drill = Manifold.cylinder(2.0 * thickness_mm - low, 0.5 * place.hole_mm, circular_segments=ROUND_SEGMENTS)
+        for name, at in zip(place.parts, place.at, strict=True):
+            drills[name] += [drill.translate((*point, low)) for point in at.tolist()]
     solids = []
     for piece, (x, y, _) in zip(assembly.pieces, assembly.poses(math.pi), strict=True):
         places = [((*at.tolist(), 0.0), seam) for at, seam in joints[piece.id]]
@@ -299,6 +317,8 @@ def pinned_solids(
         if piece.layer == 1:
             own = [(seam_pin if seam else pin).translate(at) for at, seam in places]
             body = Manifold.batch_boolean([body, *own], OpType.Add)
+        if drills[piece.id]:
+            body -= Manifold.batch_boolean(drills[piece.id], OpType.Add)
         # Where surfaces of several bodies nearly meet, vertices lie nearer to each other than STL can tell.
         body = body.as_original().set_tolerance(SHORTEST_EDGE_MM)
         solids.append(solid_of(piece.id, piece.layer, body, body.volume()).moved(np.array([x, y, 0.0])))

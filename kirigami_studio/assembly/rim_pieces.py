@@ -7,7 +7,9 @@ loses no more than they allow.
 
 from __future__ import annotations
 
+import heapq
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,13 +18,20 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
-from kirigami_studio.assembly.shaping import OVERLAP, Shaping, less, shared, united
+from kirigami_studio.assembly.shaping import OVERLAP, ZONE_CHORDS, Shaping, less, shared, united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
 
 #: Parts smaller than this, mm2, are neither cut off nor added.
 LEAST_PART = 0.5
+#: Pieces that may not lose all that is outside of an outline are cut so far outside of it, mm.
+BEYOND_MM = (1.0, 2.0, 4.0, 8.0, 16.0)
+#: Share of a piece that stays where it is cut along an outline: less would be necks alone.
+LEAST_KEPT = 0.3
+#: Middles of necks between pins outside of an outline keep so much of half a neck to the edge; the necks are so much
+#: wider than asked for; and ways inside of the outline cost this share.
+CLEAR_OF_EDGE, WIDER, INSIDE = 0.98, 1.05, 0.05
 #: Nicks at the rim that are narrower than twice this, mm, are filled.
 NICK = 2.5
 #: What is nearer than this, mm, touches.
@@ -123,19 +132,116 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
         mine = motion.brought_back(np.array([state.outline], dtype=object), here, state.turn)[0]
         body = shaping.bodies[index]
         walls = shapely.union_all(discs(motion.corners[index][motion.hinged[index]], keep))
-        wanted = united(shared(body, mine), shared(body, walls))
-        one = shaping.held_together(index, wanted)
-        if one is None:
-            strips = shapely.LineString(as_points(motion.corners[index][motion.hinged[index]])).buffer(keep)
-            one = shaping.held_together(index, united(wanted, shared(body, strips)))
-        if one is None:
-            continue
-        price = shared(less(body, one), panels[index]).area
-        if lost + price > spare:
-            continue
-        lost += price
-        shaping.bodies[index] = one
+        for one in _cut(shaping, index, mine, united(shared(body, mine), shared(body, walls))):
+            price = shared(less(body, one), panels[index]).area
+            if lost + price <= spare:
+                lost += price
+                shaping.bodies[index] = one
+                break
     return lost
+
+
+def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry) -> Iterator[Polygon]:
+    """Bodies of a piece cut along an outline, its outer pins joined, then farther and farther out.
+
+    Parameters
+    ----------
+    shaping : Shaping
+    index : int
+    mine : geometry
+        The outline's area, seen from the piece.
+    wanted : geometry
+        What of the piece is in it, and its walls.
+    """
+    motion, body = shaping.motion, shaping.bodies[index]
+    whole = shaping.held_together(index, wanted)
+    if whole is None:
+        pins = as_points(motion.corners[index][motion.hinged[index]])
+        links = shortest_links(body, pins, mine, 0.5 * float(shaping.neck_mm[index]))
+        whole = shaping.held_together(index, united(wanted, shared(body, links)))
+    if whole is not None and whole.area >= LEAST_KEPT * body.area:
+        yield whole
+    for beyond in BEYOND_MM:
+        whole = shaping.held_together(index, united(wanted, shared(body, mine.buffer(beyond))))
+        if whole is not None:
+            yield whole
+
+
+def shortest_links(body: Polygon, pins: FloatArray, inside: BaseGeometry, half_mm: float) -> BaseGeometry:
+    """Necks that join the pins of a piece and its largest part in an area, the shortest outside.
+
+    They follow the middles of the sides of triangles that the piece is divided in, where it has a neck's width.
+
+    Parameters
+    ----------
+    body : Polygon
+    pins : (K, 2) float, mm
+    inside : geometry
+    half_mm : float
+        Half of a neck.
+
+    Returns
+    -------
+    links : geometry
+        Empty where no part of the piece has all pins.
+    """
+    centres = shapely.points(pins)
+    cores = [
+        one
+        for one in shapely.get_parts(body.buffer(-CLEAR_OF_EDGE * half_mm))
+        if np.all(shapely.contains(one, centres))
+    ]
+    if not cores:
+        return Polygon()
+    ends = as_plane(pins)
+    part = max(shapely.get_parts(shared(cores[0], inside)), key=lambda one: float(one.area), default=Polygon())
+    if not part.is_empty:
+        ends = np.append(ends, as_plane(shapely.get_coordinates(part.representative_point())))
+    triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(cores[0]))
+    corners = as_plane(shapely.get_coordinates(triangles)).reshape(-1, 4)
+    middles, number = np.unique(0.5 * (corners[:, :3] + corners[:, 1:]), return_inverse=True)
+    places = np.concatenate([middles, ends])
+    sides = number.reshape(-1, 3)
+    end, triangle = shapely.STRtree(triangles).query(shapely.points(as_points(ends)), predicate="intersects")
+    first = np.concatenate([sides.ravel(), np.repeat(end + len(middles), 3)])
+    second = np.concatenate([np.roll(sides, -1, axis=1).ravel(), sides[triangle].ravel()])
+    between = as_points(0.5 * (places[first] + places[second]))
+    length = np.abs(places[first] - places[second])
+    length *= np.where(shapely.contains_xy(inside, *between.T), INSIDE, 1.0)
+    ways: list[list[tuple[int, float]]] = [[] for _ in places]
+    for one, other, cost in zip(first.tolist(), second.tolist(), length.tolist(), strict=True):
+        ways[one].append((other, cost))
+        ways[other].append((one, cost))
+    lines = [shapely.LineString(as_points(places[way])) for way in _joined(ways, range(len(middles), len(places)))]
+    return shapely.buffer(shapely.union_all(lines), WIDER * half_mm)
+
+
+def _joined(ways: list[list[tuple[int, float]]], ends: Sequence[int]) -> list[list[int]]:
+    """Ways through a graph that join some places, each to the nearest of those joined before."""
+    joined, left = {ends[0]}, set(ends[1:])
+    found: list[list[int]] = []
+    while left:
+        before: dict[int, int] = {}
+        heap = [(0.0, place, place) for place in sorted(joined)]
+        last = -1
+        while heap and last < 0:
+            cost, place, came_from = heapq.heappop(heap)
+            if place in before:
+                continue
+            before[place] = came_from
+            if place in left:
+                last = place
+            for other, more in ways[place]:
+                heapq.heappush(heap, (cost + more, other, place))
+        if last < 0:
+            return found
+        way = [last]
+        while before[way[-1]] != way[-1]:
+            way.append(before[way[-1]])
+        found.append(way)
+        joined |= set(way)
+        left -= set(way)
+    return found
 
 
 def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) -> float:
@@ -172,11 +278,15 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
         for index in np.argsort(-worth)[: np.count_nonzero(worth)].tolist():
             near = gap[piece == index]
             beside = near[rims[near]]
-            at_rim = shared(_together(gaps[beside]), placed[index].buffer(reach)) if len(beside) else Polygon()
+            at_rim = (
+                shared(_together(gaps[beside]), placed[index].buffer(reach, quad_segs=ZONE_CHORDS))
+                if len(beside)
+                else Polygon()
+            )
             if by_shares:
                 inside = _together(gaps[near[~rims[near]]])
                 needed = united(inside, shared(at_rim, state.shares[index]))
-                share = shared(state.shares[index], shared(state.outline, at_rim.buffer(reach)))
+                share = shared(state.shares[index], shared(state.outline, at_rim.buffer(reach, quad_segs=ZONE_CHORDS)))
                 want = needed if share.is_empty else united(needed, share)
             else:
                 near, needed, want = beside, at_rim, at_rim
@@ -221,12 +331,14 @@ def _extended(
     inside = free if within else shared(free, limit)
     may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and free.area - inside.area > LEAST_PART
     for room in (free, inside) if may_stick_out else (inside,):
-        best = shaping.with_more(index, room) if shared(room, missed).area > LEAST_PART else None
-        if best is None:
+        more = shaping.with_more(index, room) if shared(room, missed).area > LEAST_PART else None
+        if more is None:
             continue
-        added = less(best, body)
+        best, added = more
         beyond = 0.0 if within else less(added, limit).area
-        if (beyond <= LEAST_PART or beyond <= spare) and shared(added, missed).area > LEAST_PART:
+        if (beyond <= LEAST_PART or beyond <= spare) and (
+            added is room or (best.area > body.area + LEAST_PART and shared(added, missed).area > LEAST_PART)
+        ):
             shaping.add(index, best, added)
             return motion.placed(np.array([added], dtype=object), here, state.turn)[0], beyond
     return None, 0.0
@@ -244,10 +356,10 @@ def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
             room = shared(room, motion.brought_back(outline, np.array([index]), state.turn)[0])
         if room.area < LEAST_PART:
             continue
-        room = room.buffer(OVERLAP)
-        best = shaping.with_more(index, less(room, shaping.blocked(index, room)))
-        if best is not None and best.area > body.area + LEAST_PART:
-            shaping.add(index, best, less(best, body))
+        room = room.buffer(OVERLAP, join_style="mitre")
+        more = shaping.with_more(index, less(room, shaping.blocked(index, room)))
+        if more is not None and more[0].area > body.area + LEAST_PART:
+            shaping.add(index, *more)
 
 
 def roomiest_place(shape: BaseGeometry, tolerance_mm: float = 0.5) -> tuple[FloatArray, float]:

@@ -21,7 +21,9 @@ from kirigami_studio.lattice.deployment import Deployment
 #: Notches contain the exact sweep of ears and clearance, and exceed it by this at most, mm.
 NOTCH_TOLERANCE = 0.01
 #: Sagitta of the chords by which bodies are swept, mm: an extension keeps as much more distance than it has to.
-BODY_TOLERANCE = 0.08
+BODY_TOLERANCE = 0.15
+#: Chords of a quarter circle at corners of areas that are looked at.
+ZONE_CHORDS = 4
 #: By this, mm, outlines of what is swept are coarser than the bodies.
 COARSE = 0.25
 #: Necks that pieces are made with, as shares of those asked for, where wider ones are cut through.
@@ -41,6 +43,9 @@ OVERLAP = 0.004
 TOO_SMALL = 1e-3
 #: Vertices that lie nearer than this, mm, to the line between their neighbours are left out.
 STRAIGHT = 0.002
+#: Areas between necks are larger by this, mm, all round than the shapes that they are parts of: edges that nearly
+#: coincide take overlays six times as long.
+CLEAR = 1e-4
 
 
 #: Index of a panel, its own ears and those that pass it, and their radii; the straps of all.
@@ -259,11 +264,22 @@ class Shaping:
     @cached_property
     def pairs(self) -> IntArray:
         """Pairs (K, 2) of pieces of one plane that may come near each other; the second is passed."""
-        return self.motion.close_pairs(2.0 * (self.options.ear_mm + self.options.reach_mm) + self.options.clearance_mm)
+        return self.motion.close_pairs(
+            2.0 * self.options.ear_mm + 3.0 * self.options.reach_mm + self.options.clearance_mm
+        )
 
     @cached_property
     def _passing_ears(self) -> tuple[IntArray, IntArray]:
         """Ears, as flat indices of corners, and the panels of their plane that they may touch."""
+        return self._ears_near(self.options.reach_mm)
+
+    @cached_property
+    def _reached_ears(self) -> tuple[IntArray, IntArray]:
+        """The same with panels that are extended in both end states."""
+        return self._ears_near(3.0 * self.options.reach_mm)
+
+    def _ears_near(self, reach_mm: float) -> tuple[IntArray, IntArray]:
+        """Ears and panels of their plane, larger by a reach, that they may touch."""
         motion, options = self.motion, self.options
         one, other = self.pairs.T
         ear = (4 * one[:, None] + np.arange(4)).ravel()
@@ -273,7 +289,7 @@ class Shaping:
         ear, seen = ear[passing], seen[passing]
         middle = motion.corners.mean(axis=1)
         radius = np.abs(motion.corners - middle[:, None]).max(axis=1)
-        radius += options.ear_mm + options.clearance_mm + options.reach_mm
+        radius += options.ear_mm + options.clearance_mm + reach_mm
         apart = motion.distance_on_arc(middle[seen], motion.corners.ravel()[ear], ear // 4, seen)
         near = apart <= radius[seen]
         return ear[near], seen[near]
@@ -294,7 +310,7 @@ class Shaping:
     def _sweeps(self, index: int) -> tuple[IntArray, GeometryArray]:
         """Ears that may touch a panel, as flat indices of corners, and their sweeps (K, 3)."""
         if index not in self._swept:
-            mover, seen = self._passing_ears
+            mover, seen = self._reached_ears
             mover = mover[seen == index]
             self._swept[index] = mover, self._swept_ears(mover, np.full(len(mover), index))
         return self._swept[index]
@@ -321,6 +337,7 @@ class Shaping:
         grown = options.clearance_mm + BODY_TOLERANCE
         left, bottom, right, top = window.bounds
         box = (left - grown, bottom - grown, right + grown, top + grown)
+        boxes = shapely.bounds(shapely.get_parts(window)) + grown * np.array([-1.0, -1.0, 1.0, 1.0])
         middle, half = 0.5 * complex(left + right, bottom + top), 0.5 * abs(complex(right - left, top - bottom))
         turn = float(motion.sense[index]) * motion.opening
 
@@ -333,8 +350,8 @@ class Shaping:
         moving[moving] = near(parts.owner[moving], parts.centre[moving], parts.radius[moving])
         owner = parts.owner[moving]
         drifts = motion.seen_drift(owner, np.full(len(owner), index), parts.corners[moving])
-        hulls = swept_hulls(parts.corners[moving], drifts, turn, BODY_TOLERANCE, box)
-        zone = window.buffer(grown)
+        hulls = swept_hulls(parts.corners[moving], drifts, turn, BODY_TOLERANCE, boxes)
+        zone = window.buffer(grown, quad_segs=ZONE_CHORDS)
         shapely.prepare(zone)
         bodies = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
         mover, swept = self._sweeps(index)
@@ -349,13 +366,21 @@ class Shaping:
 
         None where the ears do not hang together by necks as wide as those of the piece.
         """
+        wide = self._between_necks(index, shape)
+        return None if wide is None else self._tidied(shared(wide, shape))
+
+    def _between_necks(self, index: int, shape: BaseGeometry) -> BaseGeometry | None:
+        """The area of the same part, larger by ``CLEAR`` all round."""
         centres = shapely.points(as_points(self.motion.corners[index][self.motion.hinged[index]]))
         half = 0.5 * float(self.neck_mm[index])
         for core in shapely.get_parts(shapely.buffer(shape, -half)):
             if np.all(shapely.contains(core, centres)):
-                whole = shared(shapely.buffer(core, half, join_style="mitre", mitre_limit=MITRE), shape)
-                return _tidy(_largest(whole), 0.25 * math.pi * self.options.ear_mm**2)
+                return shapely.buffer(core, half + CLEAR, join_style="mitre", mitre_limit=MITRE)
         return None
+
+    def _tidied(self, shape: BaseGeometry) -> Polygon:
+        """The largest part, without needless vertices, and without holes too small for an ear."""
+        return _tidy(_largest(shape), 0.25 * math.pi * self.options.ear_mm**2)
 
     def _held_narrowly(self, index: int, shape: BaseGeometry) -> Polygon:
         """The same by the widest necks that there are; the largest part where there are none."""
@@ -366,12 +391,15 @@ class Shaping:
         self.broken.add(index)
         return _largest(shape)
 
-    def with_more(self, index: int, room: BaseGeometry) -> Polygon | None:
-        """Body of a piece with all of an area that hangs on to it by a neck, or None."""
+    def with_more(self, index: int, room: BaseGeometry) -> tuple[Polygon, BaseGeometry] | None:
+        """Body of a piece with all of an area that hangs on to it by a neck, and that part of the area; or None."""
         body: Polygon = self.bodies[index]
-        found = self.held_together(index, united(body, room))
-        whole = body if found is None else united(found, body)
-        return whole if found is not None and isinstance(whole, Polygon) else None
+        both = united(body, room)
+        if (wide := self._between_necks(index, both)) is None:
+            return None
+        frame = wide if wide.covers(body) else united(wide, body)
+        whole = shared(both, frame)
+        return self._tidied(whole), room if both.area - whole.area < TOO_SMALL else shared(room, frame)
 
     def add(self, index: int, shape: Polygon, added: BaseGeometry) -> None:
         """Give a piece a larger shape; the part ``added`` counts for all that pass it later."""
@@ -500,14 +528,17 @@ def _areas(shape: BaseGeometry) -> BaseGeometry:
     if shape.geom_type in ("Polygon", "MultiPolygon"):
         return shape
     parts = shapely.get_parts(shape)
-    return shapely.union_all(parts[shapely.get_dimensions(parts) == 2])
+    return _overlay(shapely.union_all, parts[shapely.get_dimensions(parts) == 2])
 
 
 def _tidy(part: Polygon, least_hole: float) -> Polygon:
     """The polygon without vertices on straight lines, and without holes too small for an ear."""
     rings = [ring for ring in part.interiors if Polygon(ring).area > least_hole]
-    simple = shapely.simplify(Polygon(part.exterior, rings), STRAIGHT)
-    return simple if simple.is_valid and simple.geom_type == "Polygon" else part
+    for careful in (False, True):  # which takes five times as long
+        simple = shapely.simplify(Polygon(part.exterior, rings), STRAIGHT, preserve_topology=careful)
+        if simple.is_valid and isinstance(simple, Polygon) and not simple.is_empty:
+            return simple
+    return part
 
 
 def _convex_parts(part: Polygon) -> list[ComplexArray]:

@@ -94,9 +94,9 @@ PARTS = (
            help="parts of an SVG, DXF or picture: all, largest, or names, numbers, layers or colours, joined by commas "
                 "(default: what is filled or enclosed, of several pieces the largest); 'kirigami-studio parts' lists "
                 "them"),
-    option("--object", type=places, default=None, metavar="X,Y",
+    option("--object", type=places, action="extend", default=None, metavar="X,Y",
            help="a place on the object in a picture, or several ('120,80 200,95'), pixels from the upper left corner"),
-    option("--not-object", type=places, default=None, metavar="X,Y",
+    option("--not-object", type=places, action="extend", default=None, metavar="X,Y",
            help="a place that does not belong to it, such as its shadow, or several"),
     option("--join", choices=[join.value for join in Join], default=None,
            help="how parts become one outline: union of what touches, bridges between nearest places, convex hull, or "

@@ -16,6 +16,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import GRID
@@ -175,6 +176,35 @@ def _placed_nodes(design: PosedDesign, phi: float) -> FloatArray:
 def trimmed_parts(deployment: Deployment, trim: Trim) -> TrimmedParts:
     """Both sides of a trim: 10 ms for 40 trimmed panels, so they are divided when a design is decoded, and kept."""
     return TrimmedParts.of(deployment, trim)
+
+
+def covered(
+    sheet: FloatArray, target: shapely.Polygon, removed: Sequence[FloatArray] = (), voids: FloatArray | None = None
+) -> BaseGeometry:
+    """The area within the outline of a sheet (L, 2), crossings and all, but for what was cut off.
+
+    Parameters
+    ----------
+    removed : sequence of (P, 2) float, world
+        What was cut off.
+    voids : (V, 4, 2) float, world, optional
+        They count as covered, but for those beside the target that a cut has opened.
+    """
+    area: BaseGeometry = shapely.Polygon(sheet)
+    if not area.is_valid:
+        area = shapely.make_valid(area)
+    if not removed:
+        return area
+    off = shapely.union_all(polygons_of(removed), grid_size=GRID)
+    parts = shapely.get_parts(area)  # of a sheet that touches itself lines may be left over
+    area = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
+    area = shapely.difference(area, off, grid_size=GRID)
+    if voids is not None:
+        openings = shapely.polygons(voids)
+        beside = shapely.area(shapely.intersection(openings, target)) < 0.5 * shapely.area(openings)
+        lost = openings[beside & shapely.intersects(openings, off.buffer(10.0 * GRID))]
+        area = shapely.difference(area, shapely.union_all(lost, grid_size=GRID), grid_size=GRID)
+    return area
 
 
 def polygons_of(rings: Sequence[FloatArray]) -> npt.NDArray[np.object_]:

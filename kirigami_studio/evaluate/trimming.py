@@ -41,15 +41,29 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
 KEEP = 0.15
-#: A hole of which less is open counts as closed.
-MOSTLY_OPEN = 0.5
+#: A hole of which less is open counts as closed; and below this area (unit cells squared) that is for its size.
+MOSTLY_OPEN, SMALL_HOLE = 0.5, 1.0
 #: Between these depths hinges hold and panels can still be trimmed.
 SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
 
 @dataclass(frozen=True, slots=True)
+class TrimmedHole:
+    """How a trimmed design shows a hole of its target."""
+
+    open: float  #: 0..1; share of it that is open
+    cells: float  #: its area, unit cells squared
+    place: tuple[float, float]  #: (x, y), unit cells; in the compact sheet, where most of it is covered
+
+    @property
+    def is_small(self) -> bool:
+        """Whether it is smaller than the panels around it."""
+        return self.cells < SMALL_HOLE
+
+
+@dataclass(frozen=True, slots=True)
 class Trim:
-    """A trimmed design; two are equal when sheet, angle, pose, depth and match are: the rest follows from the target."""
+    """A trimmed design, equal to another of the same sheet, angle, pose, depth and match."""
 
     sheet: Sheet
     phi: float  #: radians; the angle at which the panels were cut
@@ -62,8 +76,7 @@ class Trim:
     iou: float  #: 0..1; exact IoU of the trimmed silhouette with the target
     untrimmed_iou: float = attribute(compare=False)  #: 0..1; the same of the whole silhouette in the same pose
     removed_share: float = attribute(compare=False)  #: 0..1; removed part of the sheet's area
-    #: 0..1 each; how much of each hole of the target is open.
-    holes_open: tuple[float, ...] = attribute(default=(), compare=False)
+    holes: tuple[TrimmedHole, ...] = attribute(default=(), compare=False)  #: those of the target, in its order
 
     @property
     def given_up(self) -> int:
@@ -71,9 +84,9 @@ class Trim:
         return sum(part is not None and not len(part) for part in self.kept)
 
     @property
-    def closed_holes(self) -> tuple[int, ...]:
-        """Numbers of the target's holes that stay closed for the most part."""
-        return tuple(number for number, share in enumerate(self.holes_open) if share < MOSTLY_OPEN)
+    def closed_holes(self) -> tuple[TrimmedHole, ...]:
+        """Holes of the target that stay closed for the most part."""
+        return tuple(hole for hole in self.holes if hole.open < MOSTLY_OPEN)
 
 
 def trim(
@@ -127,7 +140,7 @@ def trim(
         iou=float(both / (place.area + silhouette.area - removed - cut.open_area - both)),
         untrimmed_iou=float(shared / (silhouette.area + place.area - shared)),
         removed_share=removed / deployment.area(math.pi),
-        holes_open=tuple(1.0 - covered for covered in cut.covered),
+        holes=cut.holes,
     )
 
 
@@ -142,7 +155,7 @@ class _Parts:
     kept: KeptPanels
     open_area: float = 0.0
     open_shared: float = 0.0
-    covered: tuple[float, ...] = ()  #: 0..1 each; how much of each hole of the target the parts and voids cover
+    holes: tuple[TrimmedHole, ...] = ()
 
 
 def _edge_parts(deployment: Deployment, place: Polygon, phi: float, keep: float) -> _Parts:
@@ -171,20 +184,21 @@ def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float)
         deployment.compact[panels.corners], targets, deployment.compact[ends], gain, keep, images, open_inside
     )
     left_out = ~stay
-    covered = tuple(
-        _covered(deployment, panels, phi, Polygon(hole), kept, voids[stay.ravel()]) for hole in place.interiors
-    )
-    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()), covered)
+    shown = (voids[stay.ravel()], kept)
+    holes = tuple(_trimmed_hole(deployment, panels, phi, Polygon(hole), *shown) for hole in place.interiors)
+    return _Parts(panels.index, kept, float(area[left_out].sum()), float(shared[left_out].sum()), holes)
 
 
-def _covered(
-    deployment: Deployment, panels: PanelTable, phi: float, hole: Polygon, kept: KeptPanels, voids: GeometryArray
-) -> float:
-    """Share of a hole that kept panels and the voids between them cover."""
+def _trimmed_hole(
+    deployment: Deployment, panels: PanelTable, phi: float, hole: Polygon, voids: GeometryArray, kept: KeptPanels
+) -> TrimmedHole:
+    """How much of a hole the kept panels and the voids between them leave open."""
     whole = polygons(deployment.compact[panels.corners])
     parts = np.where([shape is None for shape in kept.shapes], whole, kept.shapes)
     common = shapely.area(shapely.intersection(parts, _brought_back(deployment, panels, phi, hole)))
-    return float(common.sum() + shapely.area(shapely.intersection(voids, hole)).sum()) / hole.area
+    covered = float(common.sum() + shapely.area(shapely.intersection(voids, hole)).sum())
+    middle = whole[int(np.argmax(common))].centroid
+    return TrimmedHole(1.0 - covered / hole.area, float(hole.area), (float(middle.x), float(middle.y)))
 
 
 def check_keep(keep: float) -> float:
@@ -212,7 +226,7 @@ def _turn(even: BoolArray, phi: float) -> ComplexArray:
 
 
 def _brought_back(deployment: Deployment, panels: PanelTable, phi: float, place: Polygon) -> GeometryArray:
-    """The target in the layout's frame at ``phi``, carried to the compact sheet with each panel: (E,) Polygon."""
+    """The target (E,) as each panel carries it from the layout at ``phi`` to the compact sheet."""
     anchors = panels.corners[:, 0]
     start, end = as_plane(deployment.nodes(phi))[anchors], as_plane(deployment.compact)[anchors]
     back = np.conj(_turn(panels.even, phi))

@@ -29,11 +29,11 @@ from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Piece, RoundHole
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
 from kirigami_studio.export.backed_files import HINGE_LAYER, Glued
-from kirigami_studio.export.cut_bed import CutBed, board_bed, laid_on_beds
+from kirigami_studio.export.cut_bed import BOARD, LAYERS, CutBed, board_bed, laid_on_beds
 from kirigami_studio.export.drive_files import drive_lines
 from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.file_content import FileContent
-from kirigami_studio.export.hold_files import hold_findings, hold_lines, holds_json
+from kirigami_studio.export.hold_files import SIDE_BY_SIDE_STEPS, hold_findings, hold_lines, holds_json
 from kirigami_studio.export.layer_files import by_layer, fill_layer_folder, laid_together, layer_paths, whole_folder
 from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
@@ -73,9 +73,11 @@ LENGTH_DECIMALS, TURN_DECIMALS = 6, 9
 RING_CHORD_MM = 5e-4
 #: Kinds of cut files that are written.
 KINDS = (".dxf", ".svg", ".lbrn2")
+#: Kinds of files with the solids of a drive, and distance of its beds in them (mm).
+SOLIDS, APART_MM = (".3mf", ".stl"), 10.0
 PIECES, PARTS, SHEET = "pieces.json", "parts.csv", "assembly.pdf"
 OWN_NAME = re.compile(
-    r"(layer-[1-9]\d*|board)(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2)?|pieces\.json|parts\.csv|assembly\.pdf"
+    r"(layer-[1-9]\d*|board)(-b[1-9]\d*)?(\.dxf|\.svg|\.lbrn2|\.stl|\.3mf)?|pieces\.json|parts\.csv|assembly\.pdf"
 )
 #: LightBurn projects have its own colours, and four decimals.
 PROJECT_PROFILE, PROJECT = "lightburn", Format((read_project, scan_project), 1e-4, 1e-6)
@@ -123,6 +125,8 @@ class AssemblyJob:
         Of the flat sheet; 0 where that is not known.
     glued : Glued or None
         The hinge layer that the pieces are glued on, in the place of pins.
+    grips : (str, str) or None
+        Ids of the pieces to hold and to pull, so that the flat sheet opens.
     """
 
     assembly: Assembly
@@ -149,6 +153,7 @@ class AssemblyJob:
     drive: DriveParts | None = None
     width_mm: float = 0.0
     glued: Glued | None = None
+    grips: tuple[str, str] | None = None
 
     @property
     def whole(self) -> Assembly:
@@ -286,10 +291,20 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
     verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
     sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
+    sheet = replace(sheet, grips=job.grips)
     if (glued := job.glued) is not None:
         template = board_bed(glued.board, 0.0)
-        sheet = replace(sheet, steps=glued.steps, legend={2: "tiles"}, template=template, under=glued.under)
+        sheet = replace(
+            sheet,
+            steps=glued.steps,
+            legend={2: mark("tiles")},
+            hold_steps=SIDE_BY_SIDE_STEPS,
+            template=template,
+            under=glued.under,
+        )
     write_assembly_pdf(sheet, fresh / SHEET, job.paper)
+    if job.drive is not None and set(kinds) >= set(KINDS[:2]):
+        _write_solids(job, fresh)
     for one in verified:
         for finding in one.findings:
             if not finding.ok:
@@ -364,11 +379,16 @@ def read_bed(job: AssemblyJob, bed: CutBed, path: Path, known: KnownOutlines) ->
     ExportError
         Missing, damaged, or of another kind.
     """
+    return _bed_verified(job, bed, path, [_content(read, path) for read in _format_of(path).readers], known, [])
+
+
+def _format_of(path: Path) -> Format:
+    """The format of a cut file, or of a folder of layer files."""
     kind = path.suffix.lower()
     how = FORMATS[".dxf"] if path.is_dir() else PROJECT if kind == ".lbrn2" else FORMATS.get(kind)
     if how is None:
         raise ExportError("verify.unknown_kind", path=path, known=", ".join(KINDS))
-    return _bed_verified(job, bed, path, [_content(read, path) for read in how.readers], known, [])
+    return how
 
 
 def _bed_verified(
@@ -437,11 +457,41 @@ def _hinge_layer_written(job: AssemblyJob, glued: Glued, fresh: Path, home: Path
     facts |= {VERDICT: job.verdict} if job.verdict else {}
     cut = glued.plan.material, glued.plan.machine
     path, contents, found = _strokes_written(job, HINGE_LAYER, kind, strokes, profile, facts, job.record, cut, fresh)
+    return _hinge_layer_verified(glued, home / path.name, contents, found, profile)
+
+
+def read_hinge_layer(job: AssemblyJob, glued: Glued, path: Path) -> Verification:
+    """Judge the hinge layer in a file of any origin, by both readers.
+
+    Parameters
+    ----------
+    job : AssemblyJob
+        With the profile of the file.
+    glued : Glued
+    path : Path
+        A file, or a folder of layer files.
+
+    Raises
+    ------
+    ExportError
+        Missing, damaged, or of another kind.
+    """
+    how, profile = _format_of(path), find_profile(job.profile)
+    if path.suffix.lower() == ".lbrn2":
+        profile = replace(find_profile(PROJECT_PROFILE), flatten=True)
+    contents = [_content(read, path) for read in how.readers]
+    return _hinge_layer_verified(glued, path, contents, [], profile)
+
+
+def _hinge_layer_verified(
+    glued: Glued, path: Path, contents: Sequence[FileContent], found: Sequence[Finding], profile: Profile
+) -> Verification:
+    """The hinge layer in a file, with what else was found there."""
     sheets = [glued.sheet_in(content.strokes, profile) for content in contents]
-    found += agreed(contents, [sheet_findings(sheet, glued.plan, profile) for sheet in sheets])
+    found = [*found, *agreed(contents, [sheet_findings(sheet, glued.plan, profile) for sheet in sheets])]
     work = glued.work(profile)
     return Verification(
-        path=home / path.name,
+        path=path,
         ok=all(finding.ok for finding in found),
         size_mm=extent(contents[-1].strokes),
         pieces=1,
@@ -455,6 +505,24 @@ def _hinge_layer_written(job: AssemblyJob, glued: Glued, fresh: Path, home: Path
 
 def _content(read: Callable[[Path], FileContent], path: Path) -> FileContent:
     return laid_together([read(part) for part in layer_paths(path)], path) if path.is_dir() else read(path)
+
+
+def _write_solids(job: AssemblyJob, fresh: Path) -> None:
+    """Write board, arms and handle, as they lie on their beds side by side, as thick as the sheet: to be printed."""
+    from kirigami_studio.assembly.printed import extruded
+    from kirigami_studio.assembly.solids import at_origin
+    from kirigami_studio.export.meshes import write_plate  # with libraries that few need
+
+    thick, solids, left = job.material.thickness_mm, [], 0.0
+    for bed in (one for one in job.beds if one.layer > LAYERS):
+        for cuts, place in bed.placed:
+            piece = cuts.piece
+            holes = [_ring(hole) for hole in piece.holes]
+            rings = [place.put(ring) + np.array([left, 0.0]) for ring in (piece.outline, *piece.openings, *holes)]
+            solids.append(extruded(piece.id, 1 + piece.layer % 2, Polygon(rings[0], rings[1:]), thick))
+        left += bed.size_mm[0] + APART_MM
+    for kind in SOLIDS:
+        write_plate(at_origin(solids), fresh / f"{BOARD}{kind}", _about(job)["subject"])
 
 
 # pieces and motion ----------------------------------------------------------------------------------------------------
@@ -555,6 +623,8 @@ class PartLine:
     count : int or None
     diameter_mm, length_mm, area_mm2, cut_mm, seconds : float or None
     note : str
+    material : str
+        Name of a material, which the note has, too.
     """
 
     item: str
@@ -568,6 +638,7 @@ class PartLine:
     cut_mm: float | None = None
     seconds: float | None = None
     note: str = ""
+    material: str = ""
 
 
 #: Headings of the columns, by the names of the entries.
@@ -668,7 +739,8 @@ def _hinge_layer_parts(job: AssemblyJob) -> list[PartLine]:
 
 def _material_part(material: Material, sizes: Sequence[tuple[float, float]]) -> PartLine:
     note = tr("{material}; area of the rectangles round what is cut", material=tr(material.name))
-    return PartLine("material", count=len(sizes), note=note, area_mm2=sum(width * height for width, height in sizes))
+    area = sum(width * height for width, height in sizes)
+    return PartLine("material", count=len(sizes), note=note, area_mm2=area, material=material.name)
 
 
 def _area(piece: Piece) -> float:
@@ -722,7 +794,7 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
                 "{material}: {area:.0f} cm2 on {count} bed",
                 "{material}: {area:.0f} cm2 on {count} beds",
                 count,
-                material=tr(job.material.name),
+                material=tr(part.material),
                 area=(part.area_mm2 or 0.0) / 100.0,
             )
         elif part.item == "hinge layer":

@@ -13,33 +13,48 @@ from functools import cached_property
 import numpy as np
 
 from kirigami_studio.assembly.backed import BackedSheet, Board
+from kirigami_studio.assembly.holding import HoldPlace
+from kirigami_studio.assembly.pieces import RoundHole
 from kirigami_studio.export.profile import Profile
-from kirigami_studio.export.provenance import AROUND, exactly, facts_of
+from kirigami_studio.export.provenance import AROUND, THROUGH, exactly, facts_of
 from kirigami_studio.export.strokes import Stroke, Work, cutting_work, frame_origin, sheet_strokes
 from kirigami_studio.fabricate.cut_path import flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan, Layer
+from kirigami_studio.fabricate.hold import HoldKind
 from kirigami_studio.fabricate.material import Construction, Material
 from kirigami_studio.fabricate.options import BoardCut
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.words import mark
 
 #: Stem of the file of the hinge layer, which is layer 1.
 HINGE_LAYER = "layer-1"
 STEPS = (
-    "Cut layer 1 out of the soft sheet and layer 2 out of the board. Leave the soft sheet on its tabs: what is left "
-    "over round it has the holes.",
-    "The hole that is out of line says how layers lie: with it on the same side, both face you as their files do.",
-    "Keep tiles in place: {keep}.",
-    "Put pins through the frame's holes into a flat surface, spread glue thinly on the tiles, and press the soft sheet "
-    "on, hole on hole. Between tiles no glue may be left: connectors bend there.",
-    "Or glue tiles one by one: lay the soft sheet on the page at true size, each tile on its number.",
-    "When the glue is dry, snip the tabs, take the sheet out of the frame, and open and close it by hand.",
+    mark(
+        "Cut layer 1 out of the soft sheet and layer 2 out of the board. Leave the soft sheet on its tabs: what is "
+        "left over round it has the holes."
+    ),
+    mark(
+        "The hole that is out of line says how layers lie: with it on the same side, both face you as their files do."
+    ),
 )
 KEEP = {
-    BoardCut.THROUGH: "stretch tape over the whole board before you take it off the machine, and turn it over for the "
-    "glue; the soft sheet then lies face down, too",
-    BoardCut.KISS: "weed what lies between them off the liner, and glue on their upper sides; the soft sheet lies on "
-    "them face up, and the liner comes off at the end",
+    BoardCut.THROUGH: mark(
+        "Keep tiles in place: stretch tape over the whole board before you take it off the machine, and turn it over "
+        "for the glue; the soft sheet then lies face down, too."
+    ),
+    BoardCut.KISS: mark(
+        "Keep tiles in place: weed what lies between them off the liner, and glue on their upper sides; the soft sheet "
+        "lies on them face up, and the liner comes off at the end."
+    ),
 }
+GLUE_STEPS = (
+    mark(
+        "Put pins through the frame's holes into a flat surface, spread glue thinly on the tiles, and press the soft "
+        "sheet on, hole on hole. Between tiles no glue may be left: connectors bend there."
+    ),
+    mark("Or glue tiles one by one: lay the soft sheet on the page at true size, each tile on its number."),
+    mark("When the glue is dry, snip the tabs, take the sheet out of the frame, and open and close it by hand."),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +65,7 @@ class Glued:
     board: Board
     material: Material  #: of the board
     cut: BoardCut
+    holds: tuple[HoldPlace, ...] = ()  #: places that hold the sheet, whose holes are in the tiles
 
     @property
     def plan(self) -> CutPlan:
@@ -59,7 +75,7 @@ class Glued:
     @property
     def steps(self) -> tuple[str, ...]:
         """Steps of assembly."""
-        return tuple(step.format(keep=KEEP[self.cut]) for step in STEPS)
+        return (*STEPS, KEEP[self.cut], *GLUE_STEPS)
 
     @property
     def under(self) -> FloatArray:
@@ -71,14 +87,30 @@ class Glued:
         """Area of all tiles."""
         return float(sum(tile.area for tile in self.sheet.flat_tiles.values()))
 
+    @cached_property
+    def through(self) -> tuple[RoundHole, ...]:
+        """Holes of places that go through both layers, in the frame of the plan: for thread and eyelets."""
+        numbers = {piece.id: number for number, piece in enumerate(self.board.pieces)}
+        origins = self.board.places - self.board.layer_at
+        return tuple(
+            RoundHole(point + origins[numbers[name]], place.hole_mm)
+            for place in self.holds
+            if place.kind in (HoldKind.STITCHES, HoldKind.EYELETS)
+            for name, at in zip(place.parts, place.at, strict=True)
+            for point in at
+        )
+
     def holes(self, profile: Profile) -> tuple[Stroke, ...]:
-        """Registration holes round the sheet, in the frame of its strokes, as the beam goes."""
+        """Registration holes round the sheet, then those through both layers, as the beam goes.
+
+        In the frame of the sheet's strokes.
+        """
         kerf = 0.0 if profile.slots else self.plan.kerf_mm
         layer, colour = profile.layer_name(Layer.RELIEF), profile.colour[Layer.RELIEF]
         origin = frame_origin(self.plan, profile)
         found = [
             Stroke.round(np.round(hole.centre - origin, DECIMALS), hole.diameter_mm - kerf, layer, colour)
-            for hole in self.board.registration
+            for hole in (*self.board.registration, *self.through)
         ]
         if not profile.flatten:
             return tuple(found)
@@ -100,7 +132,10 @@ class Glued:
 
     def sheet_in(self, strokes: Sequence[Stroke], profile: Profile) -> list[Stroke]:
         """The strokes of the sheet, of those that a file holds, where its plan has them."""
-        return [shifted(stroke, -self.shift(profile)) for stroke in strokes[len(self.board.registration) :]]
+        return [
+            shifted(stroke, -self.shift(profile))
+            for stroke in strokes[len(self.board.registration) + len(self.through) :]
+        ]
 
     def facts(self, profile: Profile, strokes: Sequence[Stroke]) -> dict[str, str]:
         """The record in a file of the layer of its making."""
@@ -111,6 +146,7 @@ class Glued:
             "BOARD": self.material.key,
             "GAP_MM": exactly(self.sheet.tile_sizes.gap_mm),
             AROUND: f"{len(self.board.registration)}",
+            **({THROUGH: f"{len(self.through)}"} if self.through else {}),
             "LINES": f"{len(strokes)}",
         }
 

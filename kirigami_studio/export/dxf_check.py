@@ -32,7 +32,7 @@ from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRe
 from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import NAME_LAYER
-from kirigami_studio.export.provenance import AROUND, PROGRAM
+from kirigami_studio.export.provenance import AROUND, PROGRAM, SLOT_KERF, THROUGH
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
@@ -47,7 +47,9 @@ from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.foundation.plain_text import plain_line
 
 #: Kinds of file that an export has beside cut files.
-NO_CUT_FILES = frozenset({".pdf", ".png", ".gif", ".html", ".json", ".kiri", ".fold", ".xml", ".csv"})
+NO_CUT_FILES = frozenset(
+    {".pdf", ".png", ".gif", ".html", ".json", ".kiri", ".csv", ".txt", ".3mf", ".stl", ".obj", ".fold", ".xml"}
+)
 #: A tab may differ from the width that the file promises by this much (mm).
 TAB_TOLERANCE_MM = 1e-3
 #: Cuts may end this far (mm) beyond the outline: edge cuts run over it on purpose.
@@ -144,6 +146,8 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         outline = _find_outline(content.paths, problems)
     else:
         outline = tabbed_outline(content, problems)
+    if outline is not None:
+        outline = _with_holes(outline, content, problems)
     problems += placement_problems(content.paths, outline)
     pieces, ligament = _physics(content, outline, kerf, problems)
     if record is not None and ligament is not None and ligament < record.least_connector_mm - WIDTH_TOLERANCE_MM:
@@ -307,14 +311,19 @@ def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> 
 
 
 def _without_registration(content: DxfContent, problems: list[Problem]) -> DxfContent:
-    """The sheet of a file with so many holes round it; files for single layers stay."""
+    """The sheet of a file with so many holes round it and in it; files for single layers stay."""
     promised = content.facts.get(AROUND)
     if promised is None or "PART" in content.facts:
         return content
-    count = int(promised) if promised.isdecimal() and len(promised) <= 2 else 0
-    holes, cuts = content.paths[:count], content.paths[count:]
+    around, through = (
+        int(one) if one.isdecimal() and len(one) <= 2 else 0 for one in (promised, content.facts.get(THROUGH, "0"))
+    )
+    outside, inside = content.paths[:around], content.paths[around : around + through]
+    cuts = content.paths[around + through :]
     sheet = shapely.box(*shapely.total_bounds([LineString(path.points) for path in cuts])) if cuts else Polygon()
-    if not count or not all(path.closed and not sheet.intersects(LineString(path.points)) for path in holes):
+    lines = [LineString(path.points) for path in (*outside, *inside)]
+    right = [sheet.intersects(line) == (number >= around) for number, line in enumerate(lines)]
+    if not around or not all(right) or not all(path.closed for path in (*outside, *inside)):
         problems.append(Problem.error("cut_file.registration_differs", promised=promised))
         return content
     return replace(content, paths=cuts)
@@ -391,6 +400,31 @@ def _find_outline(paths: Sequence[FilePath], problems: list[Problem]) -> Polygon
         problems.append(Problem.error("cut_file.outline_crosses_itself", (float(where[0]), float(where[1]))))
         return None
     return outline
+
+
+def _holes_said(facts: Mapping[str, str]) -> int:
+    """How many holes a file of ours says that its silhouette has."""
+    said = facts.get("HOLES", "0")
+    return int(said) if said.isdecimal() and len(said) <= 3 else 0
+
+
+def _with_holes(outline: Polygon, content: DxfContent, problems: list[Problem]) -> Polygon:
+    """The area inside the outline less as many holes as the file says: the last closed cuts.
+
+    Slots run into holes: in a file of slots they are slots like the others.
+    """
+    count = 0 if SLOT_KERF in content.facts else _holes_said(content.facts)
+    if not count:
+        return outline
+    near = outline.exterior.buffer(SAME_POINT_MM)
+    layered = [path for path in content.paths if path.layer == Layer.HOLES.value]
+    closed = [path.points for path in layered or content.paths if path.closed and len(path.points) > 3]
+    holes = [points for points in closed if not LineString(points).within(near)][-count:]
+    cut = Polygon(outline.exterior, holes)
+    if len(holes) < count or not cut.is_valid:
+        problems.append(Problem.error("cut_file.holes_differ", count=len(holes), promised=count))
+        return outline
+    return cut
 
 
 def _chains(paths: Sequence[FilePath]) -> list[LineString]:
@@ -480,11 +514,11 @@ def _physics(
     """Cut the sheet: number of pieces and narrowest ligament."""
     if outline is None or "PART" in content.facts:
         return None, None
-    ring = outline.exterior
+    ring = outline.boundary
     near_ring = ring.buffer(SAME_POINT_MM)
     inner = [path for path in content.paths if not LineString(path.points).within(near_ring)]
     holes = [Polygon(path.points) for path in inner if path.closed and len(path.points) > 3]
-    problems += _loose_discs(inner)
+    problems += _loose_discs(inner, _holes_said(content.facts))
     sheet: BaseGeometry = outline.difference(shapely.union_all([hole for hole in holes if hole.is_valid]))
     cuts, joined = _inner_cuts(inner, content.facts, problems)
     left = remaining_pieces(sheet, cuts, kerf)
@@ -506,13 +540,13 @@ def _physics(
     return pieces, ligament.width_mm
 
 
-def _loose_discs(inner: Sequence[FilePath]) -> list[Problem]:
-    """Closed cuts inside the outline, beside relief holes and slots: their inside falls out."""
+def _loose_discs(inner: Sequence[FilePath], meant: int = 0) -> list[Problem]:
+    """Closed cuts whose inside falls out, beside relief holes, slots and holes that are meant."""
     closed = [Polygon(path.points) for path in inner if path.closed and path.layer != Layer.RELIEF.value
               and len(path.points) > 3]  # fmt: skip
     # Twice the area over half the length: about the width of a slot, the radius of a disc.
     wide = [ring for ring in closed if 4.0 * ring.area > WIDEST_SLOT_MM * 2.0 * ring.length]
-    if not wide:
+    if len(wide) <= meant:
         return []
     largest = max(wide, key=lambda ring: float(ring.area))
     size = math.sqrt(4.0 * largest.area / math.pi)

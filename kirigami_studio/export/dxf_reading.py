@@ -46,13 +46,14 @@ FARTHEST_MM = 1e12
 #: Curves that are larger than this (mm) are not followed.
 LARGEST_CURVE_MM = 100_000.0
 #: Chord tolerance (mm) for curves.
-FLATTEN_MM = 0.005
+FLATTEN_MM = 0.001
 #: Facts about a file's making that its check needs, the last two in numbered pieces; R12 files keep them among ezdxf's
 #: own records.
 RECORDED_FACTS = (
     "KIRIGAMI_STUDIO", "CONSTRUCTION", "DESIGN", "WIDTH_MM", "CONNECTOR_MM", "LEAST_CONNECTOR_MM", "KERF_MM",
     "SLOT_KERF_MM", "STYLE", "ORDER", "PROFILE", "MATERIAL", "MACHINE", "LINES", "TRIMMED", "TABS", "TABS_ASKED",
-    "TAB_MM", "JOINS", "PART", "COPIES", "COPIES_ASKED", "COPY_GAP_MM", "NAME", "ENGRAVED_LINES", "VERDICT", "PURPOSE",
+    "TAB_MM", "JOINS", "HOLES",
+    "PART", "COPIES", "COPIES_ASKED", "COPY_GAP_MM", "NAME", "ENGRAVED_LINES", "VERDICT", "PURPOSE",
     "LAYER", "BED", "PIECES", "PIN_MM", "EAR_MM", "CLEARANCE_MM", "FASTENER",
 )  # fmt: skip
 RECORDED_LISTS, MOST_PIECES = ("HINGE_MM", "REMOVED"), 400

@@ -37,6 +37,17 @@ HOLD_STEPS = {
         "face; on layer 2 the engraved mark is on the other one."
     ),
 }
+#: The same where parts of one thickness lie side by side alone: tiles, and what is printed.
+SIDE_BY_SIDE_STEPS = HOLD_STEPS | {
+    HoldKind.MAGNETS: mark(
+        "Glue a magnet into each hole of a numbered place, with the pole in the list towards you (N, S): mark one pole "
+        "of the stack first."
+    ),
+    HoldKind.EYELETS: mark("Set eyelets into the holes of numbered places, and tie both with a ring or a cord."),
+    HoldKind.TABS: mark(
+        "Move the sheet to the picture with the numbered places, then stick tape over the edge of each."
+    ),
+}
 #: Names of the lines of the parts list, by what they keep.
 KEPT = {HeldState.FLAT: mark("keep it flat"), HeldState.OPEN: mark("keep it open")}
 #: Parts of each kind at a place.

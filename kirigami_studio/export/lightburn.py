@@ -41,6 +41,8 @@ PALETTE_NUMBER = {
     Layer.KISS: 3,
     Layer.OUTLINE: 1,
 }
+#: The number of holes in a sheet with slits, whose number they have otherwise: cyan.
+HOLES_BESIDE_SLITS = 6
 #: Number of the name in the palette: black.
 NAME_NUMBER = 0
 #: Share of the material's power that the name is engraved with.
@@ -110,8 +112,9 @@ def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
         _add_setting(root, "Tool", TOOL_LAYER, "CONNECTORS", len(plan.layers) + (1 if names else 0), {})
     for stroke in names:
         _add_path(root, stroke, NAME_NUMBER)
+    palette = palette_for(plan.layers)
     for path in plan.copies.of(plan.paths):
-        _add_path(root, path, PALETTE_NUMBER[path.layer])
+        _add_path(root, path, palette[path.layer])
     marked = (plan.copies.places[:, None] + plan.hinges.position).reshape(-1, 2)
     for x, y in marked.tolist() if markers else []:
         _add_circle(root, (x, y), MARKER_RADIUS_MM, TOOL_LAYER)
@@ -124,14 +127,20 @@ def strokes_lightburn(
     """Return the project of any strokes; their layers have the names of :class:`Layer`."""
     names = [stroke for stroke in strokes if stroke.layer == NAME_LAYER]
     cuts = [(stroke, Layer(stroke.layer)) for stroke in strokes if stroke.layer != NAME_LAYER]
-    root = _project(material, machine, tuple(dict.fromkeys(layer for _, layer in cuts)), bool(names))
+    layers = tuple(dict.fromkeys(layer for _, layer in cuts))
+    palette, root = palette_for(layers), _project(material, machine, layers, bool(names))
     numbers = [
         *((stroke, NAME_NUMBER) for stroke in names),
-        *((stroke, PALETTE_NUMBER[layer]) for stroke, layer in cuts),
+        *((stroke, palette[layer]) for stroke, layer in cuts),
     ]
     for stroke, number in numbers:
         _add_path(root, stroke, number)
     return _with_notes(root, material, facts, (), bool(names))
+
+
+def palette_for(layers: Sequence[Layer]) -> dict[Layer, int]:
+    """Numbers of the palette for the layers of one project, each its own."""
+    return PALETTE_NUMBER | ({Layer.HOLES: HOLES_BESIDE_SLITS} if Layer.SLITS in layers else {})
 
 
 def _project(material: Material, machine: Machine, layers: Sequence[Layer], named: bool) -> ElementTree.Element:
@@ -153,8 +162,9 @@ def _project(material: Material, machine: Machine, layers: Sequence[Layer], name
         faint = f"{NAME_POWER * material.power_percent:g}"
         light = work | {"minPower": faint, "maxPower": faint, "numPasses": "1"}
         _add_setting(root, "Cut", NAME_NUMBER, NAME_LAYER, 0, light)
+    palette = palette_for(layers)
     for priority, layer in enumerate(layers, start=1 if named else 0):
-        _add_setting(root, "Cut", PALETTE_NUMBER[layer], layer.value, priority, work)
+        _add_setting(root, "Cut", palette[layer], layer.value, priority, work)
     return root
 
 

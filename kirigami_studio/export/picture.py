@@ -37,7 +37,7 @@ INK: Colour = (40, 40, 40)
 LAYER_COLOUR: Mapping[Layer, Colour] = MappingProxyType(
     {
         Layer.RELIEF: (220, 120, 0),
-        Layer.HOLES: (255, 0, 0),
+        Layer.HOLES: (0, 160, 190),
         Layer.SLITS: (255, 0, 0),
         Layer.EDGE_SLITS: (0, 160, 0),
         Layer.OUTLINE: (0, 0, 255),

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.nesting import LaidShape
 from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.plates import flat_bounds, parts_for, seams, size_of
@@ -23,11 +24,13 @@ from kirigami_studio.assembly.solids import LAYER_MM, Plate, at_origin
 from kirigami_studio.export import assembly_files
 from kirigami_studio.export.assembly_files import AssemblyFiles, pieces_json
 from kirigami_studio.export.assembly_pdf import AssemblySheet, write_assembly_pdf
+from kirigami_studio.export.hold_files import SIDE_BY_SIDE_STEPS, hold_lines
 from kirigami_studio.export.layer_files import whole_folder
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.verification import Finding, Verification
 from kirigami_studio.fabricate.cut_plan import design_hash
 from kirigami_studio.fabricate.fastener import PrintedPins
+from kirigami_studio.fabricate.hold import HoldOptions
 from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Construction, Material
 from kirigami_studio.foundation.arrays import IntArray, ShapeRings
@@ -110,6 +113,12 @@ class PrintJob:
         Where the design comes from.
     verdict : str
         Level of the verdict on the design; "" where nobody has judged it.
+    hold : HoldOptions
+        Parts that hold it in its end states.
+    holds : tuple of HoldPlace
+        Where they are.
+    grips : (str, str) or None
+        Ids of the pieces to hold and to pull.
     """
 
     assembly: Assembly
@@ -121,6 +130,9 @@ class PrintJob:
     target: ShapeRings = None
     provenance: Mapping[str, str] = field(default_factory=FrozenMapping)
     verdict: str = ""
+    hold: HoldOptions = field(default_factory=HoldOptions)
+    holds: tuple[HoldPlace, ...] = ()
+    grips: tuple[str, str] | None = None
 
     construction = Construction.PRINTED
     notes = ()
@@ -164,7 +176,9 @@ class PrintJob:
         FabricationError
             A piece whose surface does not close.
         """
-        solids = pinned_solids(self.assembly, self.thickness_mm, self.pins, self.seams)
+        solids = pinned_solids(
+            self.assembly, self.thickness_mm, self.pins, self.seams, self.holds, self.hold.magnet_height_mm
+        )
         return tuple(at_origin([solids[index] for index in part]) for part in self.parts)
 
     @cached_property
@@ -237,6 +251,10 @@ class PrintJob:
                 pin=pins.pin_mm,
                 clearance=pins.clearance_mm,
             ),
+            *(
+                f"{entry.count} {tr(assembly_files.ITEMS[entry.item])}, {entry.note}"
+                for entry in hold_lines(self.holds, self.hold)
+            ),
             tr(
                 "{material}: {volume:.1f} cm3 where it is solid; weight and time are told by the slicer",
                 material=tr(self.material.name),
@@ -267,12 +285,25 @@ def write_print(
                 verified.append(_verification(plate, bodies, home, kind))
         for kind in kinds if job.caps else ():
             write_plate(job.caps, fresh / f"{CAPS}{kind}", job.about)
-        write_atomically(fresh / PIECES, (json.dumps(pieces_json(job.assembly), separators=(",", ":")) + "\n").encode())
+        write_atomically(
+            fresh / PIECES,
+            (json.dumps(pieces_json(job.assembly, holds=job.holds), separators=(",", ":")) + "\n").encode(),
+        )
         joining = JOINING if job.seams else ()
         steps = tuple(tr(step, layer_mm=LAYER_MM) for step in (*STEPS[:-1], *joining, STEPS[-1]))
         about = {"title": job.name or tr("Printed kirigami"), "subject": job.about}
         sheet = AssemblySheet(
-            job.assembly, (), about, job.lines, job.target, steps=steps, legend=LEGEND, pins_are_put_in=False
+            job.assembly,
+            (),
+            about,
+            job.lines,
+            job.target,
+            job.holds,
+            steps=steps,
+            legend=LEGEND,
+            hold_steps=SIDE_BY_SIDE_STEPS,
+            grips=job.grips,
+            pins_are_put_in=False,
         )
         write_assembly_pdf(sheet, fresh / SHEET, job.paper)
         names = sorted(entry.name for entry in fresh.iterdir())

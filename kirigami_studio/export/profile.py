@@ -19,7 +19,7 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.words import mark
 
-RED, GREEN, BLUE, MAGENTA, WHITE = 1, 3, 5, 6, 7
+RED, GREEN, CYAN, BLUE, MAGENTA, WHITE = 1, 3, 4, 5, 6, 7
 
 
 class DxfVersion(StrEnum):
@@ -57,6 +57,11 @@ class Profile:
     #: Units to the inch in which an SVG counts (25.4: mm), for programs that take its numbers for pixels; its width and
     #: height say mm in any case.
     svg_dpi: float = MM_DPI
+
+    def sheet_colour(self, layer: Layer) -> int:
+        """Colour of a layer of a sheet, whose holes are no slits; those of pieces are red."""
+        by_layer = self.colour[Layer.HOLES] != self.colour[Layer.OUTLINE]
+        return CYAN if by_layer and layer is Layer.HOLES else self.colour[layer]
 
     def layer_name(self, layer: Layer) -> str:
         """Name of a layer in files of this profile."""

@@ -20,7 +20,7 @@ from kirigami_studio.export.design_record import PIECE
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import Profile, find_profile
 from kirigami_studio.export.strokes import name_strokes, strokes_of, work_of
-from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.joints import joint_count
 from kirigami_studio.fabricate.lettering import Engraving
 from kirigami_studio.foundation.errors import ExportError
@@ -40,6 +40,8 @@ ONE_SHEET = "one-sheet"
 SLOT_KERF, VERDICT = "SLOT_KERF_MM", "VERDICT"
 #: The fact with the number of holes round the sheet that are made first.
 AROUND = "HOLES_AROUND"
+#: The same of holes in the sheet that hold it, which are made next.
+THROUGH = "HOLES_THROUGH"
 #: Raised when entries change their meaning.
 VERSION = 1
 
@@ -110,9 +112,9 @@ def _name(plan: CutPlan, profile: Profile) -> dict[str, str]:
 
 
 def _tabs(plan: CutPlan, profile: Profile) -> dict[str, str]:
-    """Tabs, and cuts that end on others on purpose, which a check would take for faults.
+    """Tabs, cuts that end on others on purpose, and holes, which a check would take for faults.
 
-    Files of closed contours have neither, and say only what was asked for.
+    Files of closed contours have no tabs and no such ends, and say only what was asked for.
     """
     facts: dict[str, str] = {}
     if plan.options.tabs:
@@ -120,6 +122,8 @@ def _tabs(plan: CutPlan, profile: Profile) -> dict[str, str]:
         facts |= {name: f"{plan.options.tabs}", "TAB_MM": exactly(plan.options.tab_mm)}
     if not profile.slots and (joints := joint_count(plan)):
         facts["JOINS"] = f"{joints}"
+    if holes := len(plan.on_layer(Layer.HOLES)):
+        facts["HOLES"] = f"{holes}"
     return facts
 
 

@@ -117,7 +117,9 @@ def sheet_strokes(plan: CutPlan, profile: Profile) -> tuple[Stroke, ...]:
     for path in plan.paths:
         flat = profile.flatten and path.bulges is not None
         points, bulges = (np.round(_chords(path, plan), DECIMALS) + 0.0, None) if flat else (path.points, path.bulges)
-        found.append(Stroke(points, path.closed, profile.layer_name(path.layer), profile.colour[path.layer], bulges))
+        found.append(
+            Stroke(points, path.closed, profile.layer_name(path.layer), profile.sheet_colour(path.layer), bulges)
+        )
     return tuple(found)
 
 
@@ -218,7 +220,7 @@ def frame_origin(plan: CutPlan, profile: Profile) -> FloatArray:
 def _finished_sheet(plan: CutPlan) -> Polygon:
     """What is left of the sheet: area between its slots."""
     half = 0.5 * plan.kerf_mm
-    outline = Polygon(plan.outline).buffer(-half, join_style="mitre", mitre_limit=MITRE_LIMIT)
+    outline = plan.boundary.buffer(-half, join_style="mitre", mitre_limit=MITRE_LIMIT)
     lines = np.array([_chord_line(path, plan) for path in plan.paths if path.layer is not Layer.OUTLINE])
     burned = shapely.union_all(shapely.buffer(lines, half, quad_segs=_quarter_chords(half)))
     inside = [LineString(path.travelled) for path in plan.paths if path.closed and path.layer is not Layer.OUTLINE]

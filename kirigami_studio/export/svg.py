@@ -16,7 +16,7 @@ from kirigami_studio.export import picture
 from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import drawn_panels, hexadecimal
-from kirigami_studio.export.profile import BLUE, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
+from kirigami_studio.export.profile import BLUE, CYAN, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
 from kirigami_studio.export.provenance import PROGRAM, facts_of, origin_facts
 from kirigami_studio.export.strokes import Stroke, extent, file_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
@@ -37,7 +37,14 @@ NOTE_LETTERS = 30.0
 #: What a picture says of itself, so that nobody cuts it.
 NO_CUT_FILE = "not a cut file"
 #: What the AutoCAD colours of the profiles look like on white.
-ACI_COLOUR = {RED: (255, 0, 0), GREEN: (0, 255, 0), BLUE: (0, 0, 255), MAGENTA: (255, 0, 255), WHITE: (0, 0, 0)}
+ACI_COLOUR = {
+    RED: (255, 0, 0),
+    GREEN: (0, 255, 0),
+    CYAN: (0, 255, 255),
+    BLUE: (0, 0, 255),
+    MAGENTA: (255, 0, 255),
+    WHITE: (0, 0, 0),
+}
 
 
 def write_cut_svg(plan: CutPlan, path: str | Path, profile: Profile, record: bytes = b"") -> None:

@@ -394,17 +394,28 @@ def file_physics(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> 
         Its kerf, and which of the strokes are the outline (by number, for the names are the profile's).
     profile : Profile
     """
-    outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
+    outlines, holes = _rims(plan, profile)
     traced = [stroke.travelled(MEASURED_CHORD_MM) for stroke in strokes]
     lines = [LineString(points) for points in traced]
-    inner, rim = lines[:-outlines], traced[-outlines:]
-    boundary = Polygon(rim[0] if outlines == 1 else joined_ring(rim))
+    inner, rim = lines[: -outlines - holes], traced[-outlines:]
+    openings = [points for points in traced[-outlines - holes : -outlines] if len(points) > 3]
+    outline = Polygon(rim[0] if outlines == 1 else joined_ring(rim))
+    drawn = Polygon(outline.exterior, openings)
+    boundary = drawn if drawn.is_valid else outline  # a file that lost a hole has other cuts in its place
     kerf = 0.0 if profile.slots else plan.kerf_mm
     loops = [Polygon(line) for line, stroke in zip(inner, strokes, strict=False) if stroke.closed]
     sheet: BaseGeometry = boundary.difference(shapely.union_all(loops))
     pieces = remaining_pieces(sheet, inner, kerf)
-    ligament = smallest_ligament(inner, boundary.exterior, kerf, _meant(inner, plan)) if inner else None
+    ligament = smallest_ligament(inner, boundary.boundary, kerf, _meant(inner, plan)) if inner else None
     return Physics(len(pieces), None if ligament is None else ligament.width_mm, max(overlap_length(lines), 0.0))
+
+
+def _rims(plan: CutPlan, profile: Profile) -> tuple[int, int]:
+    """Numbers of strokes at the end of a file: of the outline, and of the holes before it.
+
+    Slots run into the holes: of a file with slots they are slots like the others.
+    """
+    return (1, 0) if profile.slots else (len(plan.on_layer(Layer.OUTLINE)), len(plan.on_layer(Layer.HOLES)))
 
 
 def _copies_read(strokes: Sequence[Stroke], plan: CutPlan) -> list[list[Stroke]]:
@@ -452,8 +463,8 @@ def _physics_findings(physics: Physics, plan: CutPlan) -> list[Finding]:
 
 def file_voids(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> FoundVoids:
     """Find connectors and voids in the strokes of a file; see :func:`file_physics`."""
-    outlines = 1 if profile.slots else len(plan.on_layer(Layer.OUTLINE))
-    return read_voids(strokes, outlines, plan.kerf_mm, profile.slots).moved(frame_origin(plan, profile))
+    outlines, holes = _rims(plan, profile)
+    return read_voids(strokes, outlines, plan.kerf_mm, profile.slots, holes).moved(frame_origin(plan, profile))
 
 
 def sheet_findings(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> list[Finding]:
@@ -473,7 +484,10 @@ def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     centred = plan.void_miss_mm is not None and 1e3 * plan.void_miss_mm < VOID_MISS_UM
     if centred:
         narrowest, planned = voids.narrowest_mm, int(np.sum(~plan.hinges.removed))
-        if len(voids.connectors) != planned or narrowest < plan.min_connector_mm - 2.0 * WIDTH_TOLERANCE_MM:
+        # A corner of a hole that is as round as a slot ends looks like one more connector.
+        most = math.inf if plan.on_layer(Layer.HOLES) else planned
+        lost = not planned <= len(voids.connectors) <= most
+        if lost or narrowest < plan.min_connector_mm - 2.0 * WIDTH_TOLERANCE_MM:
             widths = {"narrowest_mm": narrowest, "planned": planned, "planned_mm": plan.min_connector_mm}
             return [Finding.judged(False, "verify.connectors_lost", connectors=len(voids.connectors), **widths)]
         if narrow := _too_narrow(voids, plan):
@@ -511,7 +525,8 @@ def _cautions(plan: CutPlan, profile: Profile, version: str, strokes: Sequence[S
     """Notes on this profile and version."""
     found = [profile.note] if profile.note is not None else []
     if plan.engraving is not None and profile.name_colour is None:
-        found.append(Note.of("profile.name_left_out", name=plan.engraving.text))
+        name = plan.engraving.text
+        found.append(Note.of("profile.name_left_out", name=name) if name else Note.of("profile.marks_left_out"))
     if version == "R12" and path.suffix.lower() != ".svg":
         found.append(Note.of("verify.no_unit_in_r12"))
     if profile.slots:

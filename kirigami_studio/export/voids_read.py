@@ -94,7 +94,9 @@ class _Tip:
     shape: BaseGeometry  #: mm; the tip's centre, or the shape that the cut ends in
 
 
-def read_voids(strokes: Sequence[Stroke], outlines: int, kerf_mm: float, slots: bool = False) -> FoundVoids:
+def read_voids(
+    strokes: Sequence[Stroke], outlines: int, kerf_mm: float, slots: bool = False, holes: int = 0
+) -> FoundVoids:
     """Find the connectors of a file and pair them to voids.
 
     Parameters
@@ -107,16 +109,20 @@ def read_voids(strokes: Sequence[Stroke], outlines: int, kerf_mm: float, slots: 
         Full cut width.
     slots : bool
         Whether the strokes are the edges of the finished part instead of centre lines.
+    holes : int
+        How many strokes before the outline are holes of the silhouette.
     """
     lines = [LineString(stroke.travelled(CHORD_MM)) for stroke in strokes]
     if slots:
         return _voids(_connectors(_slot_tips(lines, kerf_mm), [*lines[:-1]], lines[-1], kerf_mm, 0.5 * kerf_mm))
-    inner = lines[:-outlines]
+    inner = lines[: -outlines - holes]
     if not inner:
         return _voids([])
     rims = [shapely.get_coordinates(line) for line in lines[-outlines:]]
-    rim = LineString(rims[0] if outlines == 1 else np.concatenate([joined_ring(rims), rims[0][:1]]))
-    group, tips = _line_tips(inner, [stroke.closed for stroke in strokes[:-outlines]], Polygon(rim))
+    ring = rims[0] if outlines == 1 else np.concatenate([joined_ring(rims), rims[0][:1]])
+    openings = [line for line in lines[-outlines - holes : -outlines] if len(line.coords) > 3]
+    rim = MultiLineString([LineString(ring), *openings]) if holes else LineString(ring)
+    group, tips = _line_tips(inner, [stroke.closed for stroke in strokes[: len(inner)]], Polygon(ring, openings))
     parts: list[list[LineString]] = [[] for _ in range(int(group.max()) + 1)]
     for number, line in zip(group.tolist(), inner, strict=True):
         parts[number].append(line)
@@ -192,7 +198,7 @@ def _circle_middle(points: FloatArray) -> FloatArray:
 
 
 def _connectors(
-    tips: Sequence[_Tip], cuts: Sequence[BaseGeometry], rim: LineString, kerf_mm: float, hidden_mm: float
+    tips: Sequence[_Tip], cuts: Sequence[BaseGeometry], rim: BaseGeometry, kerf_mm: float, hidden_mm: float
 ) -> list[FoundConnector]:
     """The neck before every tip.
 

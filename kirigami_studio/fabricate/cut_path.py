@@ -28,9 +28,9 @@ class Layer(Enum):
     """Groups of paths that a machine may treat differently, in the order of cutting; the values are names in files."""
 
     RELIEF = "RELIEF"
-    HOLES = "HOLES"  #: and openings in the pieces of an assembly
     SLITS = "SLITS"
     EDGE_SLITS = "EDGE_SLITS"
+    HOLES = "HOLES"  #: of the silhouette, and openings in the pieces of an assembly
     KISS = "KISS"  #: tiles that are cut to the liner of their board
     OUTLINE = "OUTLINE"
 

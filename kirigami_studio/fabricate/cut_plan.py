@@ -68,8 +68,8 @@ WHY_STRAIGHT = {
 class CutPlan:
     """A job for the cutter."""
 
-    #: In the order of cutting: relief holes, holes of the silhouette, slits, edge cuts, outline (one closed path, or as many open ones as there
-    #: are tabs).  Smallest coordinates are 0, y up.
+    #: In the order of cutting: relief holes, slits, edge cuts, holes of the silhouette, outline (one closed path, or as
+    #: many open ones as there are tabs).  Smallest coordinates are 0, y up.
     paths: tuple[CutPath, ...]
     size_mm: tuple[float, float]  #: (width, height); the finished sheet; of a trimmed one, what it was before
     #: connector_mm, kerf_mm, overcut_mm: finished connector width asked for, full cut width, reach of edge cuts beyond

@@ -24,6 +24,8 @@ TIP_SEGMENTS = 16
 DUST_MM2 = 1e-6
 #: Two cuts nearer than this (mm) side by side are one cut made twice.
 SAME_LINE_MM = 1e-3
+#: A cut that ends on a corner of the outline is this near to it (mm) when it was read back from a file.
+ON_OUTLINE_MM = 1e-9
 #: Shapes whose neighbours are looked up at once.
 BLOCK = 256
 #: Share of a distance by which two ways to measure it may differ.
@@ -94,7 +96,7 @@ def smallest_ligament(
         found += _nearest_two(lines, joined)
     if outline is not None and len(lines):
         shapely.prepare(outline)
-        inside = lines[~shapely.intersects(outline, lines)]
+        inside = lines[~shapely.dwithin(outline, lines, ON_OUTLINE_MM)]
         if found:
             # What is farther away than two cuts are is not the narrowest place.
             inside = inside[shapely.dwithin(outline, inside, found[0][0] * (1.0 + ROUNDING))]

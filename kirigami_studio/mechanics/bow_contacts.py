@@ -70,7 +70,7 @@ def meetings(panels: Sequence[FloatArray], connectors: SheetConnectors, voids: I
         Connectors at the corners of every void, in turn; ``NONE`` where there is none.
     """
     deep = DEEP * float(connectors.width_mm.mean())
-    rigid = shapely.buffer(_polygons(panels), -0.5 * kerf_mm, join_style="mitre")
+    rigid = panel_areas(panels, kerf_mm)
     found = [
         corner
         for pairs in (_across(rigid, connectors, voids), _beside(rigid, connectors, kerf_mm))
@@ -133,10 +133,10 @@ class _Pairs:
             (self.still[pair], moved, still, moving),
             (moved, self.still[pair], moving, still),
         ):
-            deepest = _deepest(edge, corner)
-            if deepest is None:
+            met = deepest(edge, corner)
+            if met is None:
                 continue
-            point, foot = deepest
+            point, foot = met
             normal = (foot - point) / abs(foot - point)
             if of_edge == still:
                 point = complex(back(np.array(point)))
@@ -165,7 +165,7 @@ class _Pairs:
         return touching
 
 
-def _deepest(area: shapely.Geometry, other: shapely.Geometry) -> tuple[complex, complex] | None:
+def deepest(area: shapely.Geometry, other: shapely.Geometry) -> tuple[complex, complex] | None:
     """The corner of one shape that is deepest in an area, and the place of the area's edge nearest to it."""
     corners = np.asarray(shapely.points(shapely.get_coordinates(other)))
     inside = corners[shapely.contains_properly(area, corners)]
@@ -183,6 +183,32 @@ def _plane(points: FloatArray) -> ComplexArray:
 
 def _points(plane: ComplexArray) -> FloatArray:
     return np.stack([plane.real, plane.imag], axis=-1)
+
+
+def panel_areas(panels: Sequence[FloatArray], kerf_mm: float) -> npt.NDArray[np.object_]:
+    """Shapes of panels (Q, 2), half a kerf smaller all round; empty for missing ones."""
+    return shapely.buffer(_polygons(panels), -0.5 * kerf_mm, join_style="mitre")
+
+
+def without_bends(
+    areas: npt.NDArray[np.object_], panels: IntArray, connectors: SheetConnectors, kerf_mm: float
+) -> npt.NDArray[np.object_]:
+    """Shapes (P,) of panels without the parts that bend at connectors of ``panels`` (H, 2)."""
+    bends = _bends(connectors, kerf_mm)
+    own: list[list[int]] = [[] for _ in areas]
+    for connector, sides in enumerate(panels.tolist()):
+        for side in sides:
+            own[side].append(connector)
+    return np.array(
+        [shapely.difference(area, shapely.union_all(bends[held])) for area, held in zip(areas, own, strict=True)],
+        dtype=object,
+    )
+
+
+def _bends(connectors: SheetConnectors, kerf_mm: float) -> npt.NDArray[np.object_]:
+    """Discs (H,) of material that bends around connectors; longer ones bend further away."""
+    reach = BENDING_SPANS * (connectors.width_mm + kerf_mm) + 0.5 * connectors.longer_mm
+    return shapely.buffer(shapely.points(connectors.centres.mean(axis=1)), reach, quad_segs=8)
 
 
 def _polygons(panels: Sequence[FloatArray]) -> npt.NDArray[np.object_]:

@@ -9,7 +9,7 @@ place where a point of one panel runs into an edge of another.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -81,6 +81,11 @@ class Stops:
 
     def __len__(self) -> int:
         return len(self.panels)
+
+    def and_also(self, more: Stops) -> Stops:
+        """Both kinds of stops."""
+        names = [one.name for one in fields(self)]
+        return Stops(*(np.concatenate([getattr(self, name), getattr(more, name)]) for name in names))
 
     @classmethod
     def none(cls) -> Stops:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -45,6 +45,12 @@ class SheetNetwork:
         section = self.sheet.young_mpa * self.sheet.thickness_mm * self.connectors.width_mm
         strain: FloatArray = np.abs(pull) / section
         return strain
+
+    def with_meetings(self, more: Meetings) -> SheetNetwork:
+        """The same sheet, in which some more panels run into each other."""
+        network = self.network
+        stops = _stops(more, self.connectors, self.sheet, network.numbers)
+        return replace(self, network=replace(network, stops=network.stops.and_also(stops)))
 
     def strains(self, turn: FloatArray, pull: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Outer-fibre strain of connectors that are turned (..., H) radians and pulled (..., H) N.

@@ -51,6 +51,9 @@ STEP = 0.5
 SOLID = 0.5
 #: Pixels (of the picture that is judged) by which a silhouette may shrink when its edge is sought midway.
 SHRINKS = 3.0
+#: Pixels around a silhouette that are blur; share of its level from which on something is a paler part or a shadow
+#: (less is what JPEG adds), and of its area.
+HALO, PALEST, FADES = 3, 0.12, 0.01
 #: A page: share of the picture, share of a rectangle around it, lightness above its ground, and colourfulness.
 PAGE_SHARE, PAGE_FILLS, PAGE_LIGHTER, PAGE_CHROMA = 0.3, 0.97, 20.0, 12.0
 #: Share of a page that a shape on it has at least.
@@ -170,7 +173,15 @@ def level_of(distance: FloatArray, least: float) -> tuple[float, bool]:
             break
     if best is None or best[1] < LEAST_SHARP:
         return middle, False
-    return _midway(smooth, best[0], highest), best[1] >= SHARP
+    level = _midway(smooth, best[0], highest)
+    return level, best[1] >= SHARP and not _fades(smooth, level, least)
+
+
+def _fades(smooth: FloatArray, level: float, least: float) -> bool:
+    """Whether a shadow or a paler part of the shape hangs together with a level's silhouette."""
+    whole = silhouette(smooth, level)
+    beside = silhouette(smooth, max(least, PALEST * level)) & ~ndimage.binary_dilation(whole, iterations=HALO)
+    return float(np.sum(beside)) > FADES * float(np.sum(whole))
 
 
 def _midway(smooth: FloatArray, level: float, highest: FloatArray) -> float:
@@ -244,7 +255,12 @@ def _ground(small: FloatArray, border: BoolArray) -> tuple[FloatArray, BoolArray
             for row, column in _corners(rows, columns)
         ]
     )
-    model, good = _fitted(terms, seen)
+    centre = _colour_of_corners(corners, lab)
+    alike = np.linalg.norm(lab - centre, axis=1) < SAME_CORNERS
+    has_one = np.sum(np.linalg.norm(corners - centre, axis=1) < SAME_CORNERS) >= CORNERS
+    is_most = bool(np.mean(alike) >= MOST_OF_BORDER) or (bool(has_one) and bool(np.mean(alike) >= EXPLAINED))
+    # Begun with one colour, the light is not bent towards a shape that the border cuts.
+    model, good = _fitted(terms, seen, alike if is_most else None)
     there = colours_in_lab(
         np.clip(
             _terms(_corners(rows, columns)[:, 0], _corners(rows, columns)[:, 1], small.shape[:2]) @ model, 0.0, 1.0
@@ -252,9 +268,8 @@ def _ground(small: FloatArray, border: BoolArray) -> tuple[FloatArray, BoolArray
     )[0]
     fits = np.sum(np.linalg.norm(corners - there, axis=1) <= 2.0 * SAME_GROUND)
     if np.mean(good) < EXPLAINED or fits < CORNERS or _leaves(model, seen[good]):
-        centre = _colour_of_corners(corners, lab)
-        good = np.linalg.norm(lab - centre, axis=1) < SAME_CORNERS
-        if np.mean(good) < MOST_OF_BORDER and np.sum(np.linalg.norm(corners - centre, axis=1) < SAME_CORNERS) < CORNERS:
+        good = alike
+        if np.mean(good) < MOST_OF_BORDER and not has_one:
             return None
         model = np.zeros((6, seen.shape[1]))
         model[0] = np.median(seen[good], axis=0)
@@ -263,9 +278,15 @@ def _ground(small: FloatArray, border: BoolArray) -> tuple[FloatArray, BoolArray
     return model, known
 
 
-def _fitted(terms: FloatArray, seen: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """Fit colours (N, C) by terms (N, K), and which of them follow: what is off by more is another thing."""
-    good = np.ones(len(seen), dtype=bool)
+def _fitted(terms: FloatArray, seen: FloatArray, begun: BoolArray | None = None) -> tuple[FloatArray, BoolArray]:
+    """Fit colours (N, C) by terms (N, K), and which of them follow: others are another thing.
+
+    Parameters
+    ----------
+    begun : (N,) bool, optional
+        Those that the first fit is of; by default all.
+    """
+    good = np.ones(len(seen), dtype=bool) if begun is None else begun
     for _ in range(8):
         model = np.linalg.lstsq(terms[good], seen[good], rcond=None)[0]
         off = 100.0 * np.linalg.norm(seen - terms @ model, axis=1)
@@ -290,8 +311,9 @@ def _evened(small: FloatArray, judged: FloatArray, within: BoolArray) -> FloatAr
     if len(rows) < LEAST_SEEN:
         return None
     few = slice(None, None, max(len(rows) // MOST_SEEN, 1))
-    model, good = _fitted(_terms(rows[few], columns[few], small.shape[:2], 4), small[rows[few], columns[few]])
-    return model if np.mean(good) > EXPLAINED else None
+    seen = small[rows[few], columns[few]]
+    model, good = _fitted(_terms(rows[few], columns[few], small.shape[:2], 4), seen)
+    return model if np.mean(good) > EXPLAINED and not _leaves(model, seen[good]) else None
 
 
 def _corners(rows: IntArray, columns: IntArray) -> IntArray:

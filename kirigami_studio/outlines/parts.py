@@ -5,6 +5,7 @@ of the source, y up; :mod:`~kirigami_studio.outlines.merging` makes one outline 
 
 One rule says which of them are the silhouette that is seen, for all kinds of files (:class:`UsualChoice`):
 
+- What is hardly seen counts where nothing else is closed.
 - What is filled counts with its stroke.  Broad lines are painted; lines of a middling width are if they run round
   filled shapes or show more than what they enclose; thin lines count by what they enclose.
 - Of what is painted and of what thin lines enclose, the silhouette with the larger area is taken, whatever lies inside.
@@ -86,6 +87,7 @@ class StrokeStyle:
     cap: Cap = "round"  #: "round", "flat" or "square"
     join: Corner = "round"  #: "round", "mitre" or "bevel"
     mitre_limit: float = 4.0  #: length of a corner over the width, above which it is cut off
+    is_on_paper: bool = False  #: whether the width is that of a plotter's pen, which says nothing of the drawing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,6 +107,7 @@ class Part:
     is_named: bool = True  #: whether the name is the source's own
     is_letter: bool = False  #: whether it is a letter of a text
     is_aside: bool = False  #: whether it is a measure or a construction line: it counts where nothing else is closed
+    is_faint: bool = False  #: whether it is hardly seen, such as a shadow: it counts where nothing else is closed
     #: (L, 2) float, source units; of a shape with one subpath that subpath, crossings and all.
     ring: FloatArray | None = None
 
@@ -336,6 +339,11 @@ def _usual(source: SourceParts) -> UsualChoice:
     parts, size = source.parts, source.size
     if any(part.is_closed and not part.is_aside for part in parts):
         parts = tuple(part for part in parts if not part.is_aside)
+    faint = [part for part in parts if part.is_faint and part.is_closed]
+    if any(part.is_closed and not part.is_faint for part in parts):
+        parts = tuple(part for part in parts if not part.is_faint)
+    else:
+        faint = []
     shapes = [part for part in parts if part.kind is DrawnPartKind.FILLED and not part.is_letter]
     lines = [part for part in parts if part.kind is not DrawnPartKind.FILLED]
     letters = [part for part in parts if part.is_letter]
@@ -345,12 +353,12 @@ def _usual(source: SourceParts) -> UsualChoice:
         return UsualChoice(numbers, numbers, False, is_one, region=united([part.region for part in letters], size))
     lines = _without_frame(lines, source.paper) if len(parts) > 1 else lines
     extent = _extent(lines)
-    broad = [part for part in lines if part.pen.width >= BROAD * extent]
-    thin = [part for part in lines if part.pen.width < BROAD * extent]
+    broad = [part for part in lines if not part.pen.is_on_paper and part.pen.width >= BROAD * extent]
+    thin = [part for part in lines if part not in broad]
     solid = {part.number: part.seen(size) for part in shapes}
     solid.update((part.number, part.seen(size, True)) for part in broad)
     open_at = _open_contour(thin, solid, size)
-    middling = [part for part in thin if part.pen.width >= MIDDLING * extent]
+    middling = [part for part in thin if not part.pen.is_on_paper and part.pen.width >= MIDDLING * extent]
     shown = {part.number: part.seen(size, True) for part in middling} if open_at is None else {}
     is_round = bool(shown) and _is_round(middling, solid)
     shown = shown if is_round or _shows_more(middling, shown, solid, size) else {}
@@ -368,6 +376,7 @@ def _usual(source: SourceParts) -> UsualChoice:
     silhouette = Polygon(enclosed(united([kinds[part.number] for part in taken], size))[0])
     outer = _outer(taken, kinds)
     others = [one for number, one in (*solid.items(), *ring.items()) if number not in kinds]
+    others += [part.region for part in faint]
     considered = tuple(number for number in kinds if takes_rings or not _is_letter_apart(source, number, taken))
     closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
     bored = _bored(taken, {_pen(part) for part in outer}) if takes_rings else []

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -32,13 +33,14 @@ from ezdxf.math import Vec3
 from ezdxf.path import Command, from_hatch_boundary_path, from_vertices, make_path
 from ezdxf.path import Path as Curve
 from ezdxf.xclip import XClip
-from shapely.geometry import Polygon
+from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.outlines.bezier import flattened_curve
+from kirigami_studio.outlines.dxf_regions import region_rings
 from kirigami_studio.outlines.joining import refuse_scribbles
 from kirigami_studio.outlines.merging import usual_outline
 from kirigami_studio.outlines.outline import Outline
@@ -52,15 +54,17 @@ from kirigami_studio.outlines.parts import (
     parts_of_region,
 )
 from kirigami_studio.outlines.pieces import united
-from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
+from kirigami_studio.outlines.source_file import TimeBudget, decoded
 from kirigami_studio.outlines.text_curves import MOST_LETTERS, Text, scaled, text_parts
 
+DAMAGED = "source.dxf_damaged"
 #: Entities that are lines of a contour, and those that are filled; all else is text, measures and decoration.
 CURVES = frozenset({"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "SPLINE", "CIRCLE", "ELLIPSE", "HELIX"})
 HATCHES, FACES = frozenset({"HATCH", "MPOLYGON"}), frozenset({"SOLID", "TRACE", "3DFACE"})
 FILLS = HATCHES | FACES
-#: Solids of a modelling kernel, which say nothing of their lines.
-KERNEL = frozenset({"REGION", "BODY", "3DSOLID", "SURFACE"})
+#: A flat face with its edges, and solids of a modelling kernel, which are not read.
+REGION = "REGION"
+KERNEL = frozenset({"BODY", "3DSOLID", "SURFACE"})
 #: Words of layers that hold the shape, whatever else their names say, and of those that hold what is beside it or
 #: engraved on it, in several languages.
 CUT_WORDS = re.compile(
@@ -132,15 +136,23 @@ class Fill:
     is_aside: bool
 
 
+class Shown(NamedTuple):
+    """A visible entity, the layer that it shows as, and the region in which it is seen."""
+
+    entity: DXFGraphic
+    layer: str
+    clip: BaseGeometry | None  #: drawing units; None where nothing is cut off
+
+
 @dataclass(slots=True)
 class Seen:
-    """What is visible in a drawing, each entity with the layer that it shows as; and what is not."""
+    """Entities that are visible in a drawing, and names of those that are not."""
 
-    curves: list[tuple[DXFGraphic, str]] = field(default_factory=list)
-    fills: list[tuple[DXFGraphic, str]] = field(default_factory=list)
-    texts: list[tuple[DXFGraphic, str]] = field(default_factory=list)
+    curves: list[Shown] = field(default_factory=list)
+    fills: list[Shown] = field(default_factory=list)
+    texts: list[Shown] = field(default_factory=list)
     hidden: set[str] = field(default_factory=set)  #: layers with lines or fills that are off, frozen or not plotted
-    clipped: set[str] = field(default_factory=set)  #: blocks of which only a part is to be seen
+    clipped: set[str] = field(default_factory=set)  #: blocks whose clips are not followed
     kernel: int = 0  #: regions and solids that cannot be read
 
 
@@ -161,8 +173,8 @@ def read_dxf(path: str | Path) -> Outline:
     """Outline of the silhouette that is seen in a DXF file.
 
     LINE, ARC, LWPOLYLINE, POLYLINE, SPLINE, CIRCLE and ELLIPSE entities on visible, plotted layers of model space,
-    blocks included, are joined where their ends meet; gaps up to 0.5 % of the size are closed.  HATCH, SOLID, TRACE
-    and 3DFACE are filled.
+    blocks included and clipped, are joined where their ends meet; gaps up to 0.5 % of the size are closed.  HATCH,
+    SOLID, TRACE, 3DFACE and flat REGION entities are filled.
 
     Returns
     -------
@@ -174,10 +186,7 @@ def read_dxf(path: str | Path) -> Outline:
     TargetError
         Not a DXF file, damaged beyond repair, no lines, or an open contour (with the gap and its place).
     """
-    path = Path(path)
-    content = read_bytes(path, MOST_MEGABYTES)
-    with decoding(path, "source.dxf_damaged"):
-        return usual_outline(_parts(path, content))
+    return decoded(path, DAMAGED, lambda *file: usual_outline(_parts(*file)), MOST_MEGABYTES)
 
 
 def dxf_parts(path: str | Path) -> SourceParts:
@@ -188,10 +197,7 @@ def dxf_parts(path: str | Path) -> SourceParts:
     TargetError
         As :func:`read_dxf`, but for open contours.
     """
-    path = Path(path)
-    content = read_bytes(path, MOST_MEGABYTES)
-    with decoding(path, "source.dxf_damaged"):
-        return _parts(path, content)
+    return decoded(path, DAMAGED, _parts, MOST_MEGABYTES)
 
 
 def _parts(path: Path, content: bytes) -> SourceParts:
@@ -226,7 +232,8 @@ def _group(found: DxfDrawing, key: tuple[bool, str, str], lines: Sequence[Line])
     """Lines of a layer and colour, source units, and the part that all of them are like."""
     is_aside, layer, colour = key
     thickness = max(line.thickness_mm for line in lines) if found.unit else 0.0
-    pen = StrokeStyle(max(line.width * found.to_mm for line in lines) or thickness)
+    width = max(line.width * found.to_mm for line in lines)
+    pen = StrokeStyle(width or thickness, is_on_paper=not width)
     like = Part(0, "", layer, colour, DrawnPartKind.STROKED, Polygon(), (), pen, is_aside=is_aside)
     return [line.chain * found.to_mm for line in lines], like
 
@@ -262,7 +269,7 @@ def _read(path: Path, content: bytes) -> DxfDrawing:
     if repaired:
         notes = (tr("The file was damaged and was repaired while reading. Check the shape."),)
     seen = _visible(drawing, budget)
-    written = [text for entity, layer in seen.texts[:MOST_LETTERS] for text in _texts(entity, layer)]
+    written = [text for entity, layer, _ in seen.texts[:MOST_LETTERS] for text in _texts(entity, layer)]
     if not seen.curves and not seen.fills and not written:
         if seen.kernel:
             raise TargetError("dxf.only_regions")
@@ -342,19 +349,19 @@ def _visible(drawing: Drawing, budget: TimeBudget) -> Seen:
     hidden = frozen | {name for name, layer in layers.items() if layer.is_off() or not layer.dxf.get("plot", 1)}
     seen = Seen()
     _refuse_bombs(drawing)
-    for count, (entity, layer) in enumerate(_unfolded(drawing.modelspace(), 0, budget, frozen, seen)):
+    for count, shown in enumerate(_unfolded(drawing.modelspace(), Around(), budget, frozen, seen)):
         if count >= MOST_ENTITIES:
             raise TargetError("dxf.too_many_entities", limit=MOST_ENTITIES)
-        kind = entity.dxftype()
+        kind, layer = shown.entity.dxftype(), shown.layer
         if layer.lower() in hidden or layer.lower() == NEVER_PLOTTED:
-            seen.hidden |= {layer} if kind in CURVES or kind in FILLS else set()
+            seen.hidden |= {layer} if kind in CURVES or kind in FILLS or kind == REGION else set()
         elif kind in TEXTS:
-            seen.texts.append((entity, layer))
-        elif kind in FILLS:
-            seen.fills.append((entity, layer))
+            seen.texts.append(shown)
+        elif kind in FILLS or (kind == REGION and region_rings(shown.entity) is not None):
+            seen.fills.append(shown)
         elif kind in CURVES:
-            seen.curves.append((entity, layer))
-        elif kind in KERNEL:
+            seen.curves.append(shown)
+        elif kind in KERNEL or kind == REGION:
             seen.kernel += 1
     return seen
 
@@ -410,51 +417,82 @@ def _refuse_bombs(drawing: Drawing) -> None:
         raise TargetError("dxf.too_many_entities", limit=MOST_ENTITIES)
 
 
+class Around(NamedTuple):
+    """Blocks around entities: number, layer of the innermost, region in which it is seen."""
+
+    depth: int = 0
+    layer: str = LAYER_0
+    clip: BaseGeometry | None = None
+
+
 def _unfolded(
-    entities: Iterable[DXFEntity], depth: int, budget: TimeBudget, frozen: set[str], seen: Seen, outer: str = LAYER_0
-) -> Iterator[tuple[DXFGraphic, str]]:
+    entities: Iterable[DXFEntity], around: Around, budget: TimeBudget, frozen: set[str], seen: Seen
+) -> Iterator[Shown]:
     """Entities with the layers that they show as: in blocks, those on layer 0 show as their insertion's.
 
     What is inserted on a frozen layer is hidden with all of its layers; on one that is off, only what shows as it.
     """
-    if depth > DEEPEST_BLOCK:
+    if around.depth > DEEPEST_BLOCK:
         raise TargetError("dxf.blocks_too_deep", limit=DEEPEST_BLOCK)
     for entity in entities:
         budget.check()
         if not isinstance(entity, DXFGraphic) or entity.dxf.invisible:
             continue
-        layer = outer if entity.dxf.layer == LAYER_0 else entity.dxf.layer
+        layer = around.layer if entity.dxf.layer == LAYER_0 else entity.dxf.layer
+        inner = Around(around.depth + 1, layer, around.clip)
         if isinstance(entity, Polyline) and (entity.is_poly_face_mesh or entity.is_polygon_mesh):
-            yield from _unfolded(entity.virtual_entities(), depth + 1, budget, frozen, seen, layer)
+            yield from _unfolded(entity.virtual_entities(), inner, budget, frozen, seen)
         elif not isinstance(entity, Insert):
-            yield entity, layer
+            yield Shown(entity, layer, around.clip)
         elif layer.lower() in frozen:
             seen.hidden.add(layer)
         else:
-            if entity.has_extension_dict and (clip := XClip(entity)).has_clipping_path and clip.is_clipping_enabled:
-                seen.clipped.add(entity.dxf.name)
+            clip = _clip_of(entity, seen)
+            if clip is not None:
+                inner = inner._replace(clip=clip if around.clip is None else clip.intersection(around.clip))
             for single in entity.multi_insert() if entity.mcount > 1 else (entity,):
-                yield from _unfolded(single.virtual_entities(), depth + 1, budget, frozen, seen, layer)
+                yield from _unfolded(single.virtual_entities(), inner, budget, frozen, seen)
+
+
+def _clip_of(insert: Insert, seen: Seen) -> BaseGeometry | None:
+    """The region in which a block is seen, drawing units; None where nothing is cut off.
+
+    A clip that is not followed is kept by the block's name.
+    """
+    stated = insert.origin_of_copy or insert  # copies have no clip of their own
+    if not (isinstance(stated, Insert) and stated.has_extension_dict):
+        return None
+    clip = XClip(stated)
+    if not (clip.has_clipping_path and clip.is_clipping_enabled):
+        return None
+    path = clip.get_block_clipping_path()
+    corners = [(place.x, place.y) for place in insert.matrix44().transform_vertices(path.vertices)]
+    if not path.is_inverted_clip and insert.mcount == 1 and len(corners) > 2 and np.isfinite(corners).all():
+        region = Polygon(corners)
+        if region.is_valid and region.area > 0.0:
+            return region
+    seen.clipped.add(insert.dxf.name)
+    return None
 
 
 def _flattened(seen: Seen, drawing: Drawing, budget: TimeBudget) -> tuple[list[Line], list[Fill], int]:
     """Lines and fills, drawing units; z is dropped.  And the number of those that could not be read."""
-    found: list[tuple[DXFGraphic, str, list[Curve]]] = []
+    found: list[tuple[Shown, list[Curve]]] = []
     damaged: list[Exception] = []
-    for entity, layer in (*seen.curves, *seen.fills):
+    for shown in (*seen.curves, *seen.fills):
         budget.check()
         try:
-            curves = _edges(entity) if entity.dxftype() in FILLS else [make_path(entity)]
+            curves = [make_path(shown.entity)] if shown.entity.dxftype() in CURVES else _edges(shown.entity)
         except (DXFError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
             damaged.append(error)
         else:
             curves = [curve for curve in curves if len(curve) > 0]
-            found += [(entity, layer, curves)] if curves else []
+            found += [(shown, curves)] if curves else []
     if not found:
         if damaged:
             raise damaged[0]
         raise TargetError("dxf.no_length")
-    corners = [[(corner.x, corner.y) for corner in curve.control_vertices()] for _, _, all_ in found for curve in all_]
+    corners = [[(corner.x, corner.y) for corner in curve.control_vertices()] for _, all_ in found for curve in all_]
     everything = np.array([corner for some in corners for corner in some])
     if not np.isfinite(everything).all():
         raise TargetError("drawing.not_finite")
@@ -464,16 +502,26 @@ def _flattened(seen: Seen, drawing: Drawing, budget: TimeBudget) -> tuple[list[L
     layers = {layer.dxf.name.lower(): layer for layer in drawing.layers}
     lines: list[Line] = []
     fills: list[Fill] = []
-    for entity, name, curves in found:
+    for (entity, name, clip), curves in found:
         budget.check()
         chains = [_vertices(curve, distance) for curve in curves]
         line = _line(entity, chains[0], name, layers.get(name.lower()))
-        if entity.dxftype() in FILLS:
-            region = _inside(chains)
-            fills += [] if region.is_empty else [Fill(region, name, line.colour, line.is_aside)]
+        if entity.dxftype() in CURVES:
+            lines += [replace(line, chain=chain) for chain in _seen_of(line.chain, clip)]
         else:
-            lines.append(line)
+            region = _inside(chains) if clip is None else _inside(chains).intersection(clip)
+            fills += [] if region.is_empty else [Fill(region, name, line.colour, line.is_aside)]
+    if not lines and not fills:
+        raise TargetError("dxf.no_lines")
     return lines, fills, len(damaged)
+
+
+def _seen_of(chain: FloatArray, clip: BaseGeometry | None) -> list[FloatArray]:
+    """The pieces of a chain (P, 2) that lie in a region."""
+    if clip is None or clip.covers(line := LineString(chain)):
+        return [chain]
+    pieces = shapely.get_parts(shapely.line_merge(line.intersection(clip)))
+    return [shapely.get_coordinates(piece) for piece in pieces if isinstance(piece, LineString) and piece.length > 0]
 
 
 def _edges(entity: DXFGraphic) -> list[Curve]:
@@ -482,6 +530,8 @@ def _edges(entity: DXFGraphic) -> list[Curve]:
         ocs, raised = entity.ocs(), Vec3(entity.dxf.elevation).z
         paths = entity.paths.rendering_paths(entity.dxf.hatch_style)
         return [from_hatch_boundary_path(path, ocs, raised) for path in paths]
+    if entity.dxftype() == REGION:
+        return [from_vertices(ring, close=True) for ring in region_rings(entity) or ()]
     assert isinstance(entity, Solid | Face3d)
     return [from_vertices(entity.wcs_vertices(close=True))]
 

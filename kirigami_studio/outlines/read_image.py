@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 import shapely
 from PIL import Image, ImageOps, UnidentifiedImageError
 from scipy import ndimage
@@ -46,6 +47,9 @@ MOST_COLOURS, COLOUR_SIDE, LEAST_OF_COLOUR, LEAST_CHROMA = 8, 768, 0.005, 48
 MOST_PIXELS_IN_COLOUR = 25_000_000
 #: A picture of more regions is noise; a colour of more specks is texture.
 MOST_SPECKS, TEXTURE = 10_000, 200
+
+#: A shape in a picture is one to be asked about from this share of the largest one's area on; many make noise.
+ISLAND, MOST_ISLANDS = 0.1, 20
 
 #: As Pillow calls them; of an animation the first picture is read.
 FORMATS = ("PNG", "JPEG", "BMP", "WEBP", "TIFF", "GIF", "AVIF")
@@ -115,6 +119,8 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
         levels = _levels(content)
         ink = _ink(levels, threshold)
         piece, notes = trace(ink)
+        if threshold is None and not (levels.is_plain and is_alone(np.bincount(ndimage.label(ink > 0)[0].ravel())[1:])):
+            notes = (*notes, _choices())
         outline = _outline(piece, path.stem, (*levels.notes, *notes), levels.reduction, levels.is_plain)
         return _in_picture(outline, (rings_of(piece)[0] + 0.5) * levels.reduction, levels)
 
@@ -124,6 +130,19 @@ def _outline(piece: Polygon, name: str, notes: tuple[str, ...], reduction: int, 
     ring, holes = rings_of(piece)
     found = Outline.from_points(ring * reduction, name, notes, unit="px", holes=[hole * reduction for hole in holes])
     return found if is_plain and has_seen_holes(piece) else found.filled
+
+
+def is_alone(areas: npt.ArrayLike) -> bool:
+    """Whether only the largest of several regions can be meant, by their areas."""
+    ranked = np.sort(np.asarray(areas, dtype=np.float64))[::-1]
+    return len(ranked) < 2 or ranked[1] < ISLAND * ranked[0] or ranked[0] < 0.5 * float(np.sum(ranked[MOST_ISLANDS:]))
+
+
+def _choices() -> str:
+    return tr(
+        "More than one shape may be meant in this picture: check what was taken. --object X,Y takes the one at a "
+        "place, --parts those that 'kirigami-studio parts FILE' lists."
+    )
 
 
 def image_parts(path: str | Path, threshold: float | None = None, in_colour: bool = True) -> SourceParts:

@@ -30,13 +30,14 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import Cap, Corner, SourceParts, StrokeStyle, text_left_out
 from kirigami_studio.outlines.pieces import painted
 from kirigami_studio.outlines.read_svg import parts_of_drawing
-from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
+from kirigami_studio.outlines.source_file import TimeBudget, decoded
 from kirigami_studio.outlines.svg_drawing import LEAST_SEEN, Drawn, Paint, SvgDrawing
 
 #: The library's calls carry no types.
 pypdfium2: Any = untyped_pypdfium2
 pdfium: Any = untyped_pdfium
 
+DAMAGED = "source.pdf_damaged"
 MM_PER_POINT = 25.4 / 72.0
 #: Deviation of flattened curves from the true ones, share of the page's size.
 FLATNESS = 1.0 / 8000.0
@@ -44,6 +45,8 @@ FLATNESS = 1.0 / 8000.0
 MOST_OBJECTS, DEEPEST_FORM, MOST_POINTS = 20_000, 12, 200_000
 #: Megabytes of all streams, unpacked: PDFium unpacks them whole.
 MOST_UNPACKED = 256
+#: How a file states layers, which may be off; pixels at which they are looked at, and sets of objects at most.
+LAYERS, LOOKED_SIDE, MOST_SETS = b"/OCProperties", 256, 64
 STREAM = re.compile(rb"stream\r?\n")
 CAPS: tuple[Cap, ...] = ("flat", "round", "square")
 JOINS: tuple[Corner, ...] = ("mitre", "round", "bevel")
@@ -59,10 +62,7 @@ def read_pdf(path: str | Path) -> Outline:
     TargetError
         Not a PDF, locked by a password, too large, nothing drawn but texts and pictures, or an open contour.
     """
-    path = Path(path)
-    content = read_bytes(path)
-    with decoding(path, "source.pdf_damaged"):
-        return usual_outline(_parts(path.stem, content))
+    return decoded(path, DAMAGED, lambda *file: usual_outline(_parts(*file)))
 
 
 def pdf_parts(path: str | Path) -> SourceParts:
@@ -73,17 +73,14 @@ def pdf_parts(path: str | Path) -> SourceParts:
     TargetError
         As :func:`read_pdf`, but for open contours.
     """
-    path = Path(path)
-    content = read_bytes(path)
-    with decoding(path, "source.pdf_damaged"):
-        return _parts(path.stem, content)
+    return decoded(path, DAMAGED, _parts)
 
 
-def _parts(name: str, content: bytes) -> SourceParts:
+def _parts(path: Path, content: bytes) -> SourceParts:
     budget = TimeBudget()
     if content.lstrip()[:4] == b"%!PS":
         raise TargetError("pdf.postscript")
-    _refuse_bombs(content, budget)
+    has_layers = _unpacked(content, budget)
     with LOCK:
         try:
             document = pypdfium2.PdfDocument(content)
@@ -92,15 +89,16 @@ def _parts(name: str, content: bytes) -> SourceParts:
                 raise TargetError("pdf.locked") from error
             raise
         try:
-            read = _drawing(document, budget)
+            read = _drawing(document, has_layers, budget)
         finally:
             document.close()
-    return parts_of_drawing(name, read, "mm", budget)
+    return parts_of_drawing(path.stem, read, "mm", budget)
 
 
-def _refuse_bombs(content: bytes, budget: TimeBudget) -> None:
-    """Refuse a file whose streams unpack to more than PDFium should hold."""
+def _unpacked(content: bytes, budget: TimeBudget) -> bool:
+    """Refuse a file that unpacks to more than PDFium should hold; whether it states layers."""
     left = MOST_UNPACKED * 1_000_000
+    has_layers = LAYERS in content
     for start in STREAM.finditer(content):
         if not content.startswith(b"\x78", start.end()):
             continue
@@ -110,12 +108,18 @@ def _refuse_bombs(content: bytes, budget: TimeBudget) -> None:
         packed = content[start.end() : end if end > 0 else None]
         while packed and left > 0:
             try:
-                left -= len(unpacking.decompress(packed, 1_000_000))
+                piece = unpacking.decompress(packed, 1_000_000)
             except zlib.error:
                 break
-            packed = unpacking.unconsumed_tail
+            packed, left = unpacking.unconsumed_tail, left - len(piece)
+            has_layers = has_layers or LAYERS in piece
         if left <= 0:
             raise TargetError("pdf.unpacks", limit=MOST_UNPACKED)
+    return has_layers
+
+
+#: Objects of a page that are seen or hidden together: which form on the page holds them (-1 for none), and their layer.
+_Set = tuple[int, str]
 
 
 @dataclass(slots=True)
@@ -128,6 +132,7 @@ class _Page:
     points: int = 0
     has_text: bool = False
     has_picture: bool = False
+    hidden: frozenset[_Set] = frozenset()  #: what lies on layers that are off
 
     def count(self) -> None:
         self.budget.check()
@@ -136,7 +141,7 @@ class _Page:
             raise TargetError("svg.too_many_elements", elements=self.objects, limit=MOST_OBJECTS)
 
 
-def _drawing(document: Any, budget: TimeBudget) -> SvgDrawing:
+def _drawing(document: Any, has_layers: bool, budget: TimeBudget) -> SvgDrawing:
     """What the first page shows, y down, mm."""
     page = document[0]
     left, bottom, right, top = page.get_cropbox(fallback_ok=True)
@@ -149,9 +154,13 @@ def _drawing(document: Any, budget: TimeBudget) -> SvgDrawing:
     down = MM_PER_POINT * np.array([[1.0, 0.0, 0.0], [0.0, -1.0, height], [0.0, 0.0, 1.0 / MM_PER_POINT]])
     seen = _Page(FLATNESS * MM_PER_POINT * max(width, height), budget)
     get: Callable[[int], Any] = lambda index: pdfium.FPDFPage_GetObject(page.raw, index)  # noqa: E731
+    if has_layers:
+        seen.hidden = _hidden(page, (width, height), budget)
     shown = box(0.0, 0.0, MM_PER_POINT * width, MM_PER_POINT * height)
     drawn = tuple(_unfolded(get, pdfium.FPDFPage_CountObjects(page.raw), down @ upright, shown, seen, 0))
     notes = []
+    if names := sorted({layer for _, layer in seen.hidden if layer}):
+        notes.append(tr("Hidden layers were left out: {names}.", names=", ".join(names)))
     if len(document) > 1:
         notes.append(tr("Only the first of {pages} pages is read.", pages=len(document)))
     if seen.has_text:
@@ -162,7 +171,13 @@ def _drawing(document: Any, budget: TimeBudget) -> SvgDrawing:
 
 
 def _unfolded(
-    get: Callable[[int], Any], count: int, frame: FloatArray, clip: BaseGeometry, page: _Page, depth: int
+    get: Callable[[int], Any],
+    count: int,
+    frame: FloatArray,
+    clip: BaseGeometry,
+    page: _Page,
+    depth: int,
+    outer: _Set = (-1, ""),
 ) -> Iterator[Drawn]:
     """The visible shapes of a page or of a form in it, in the order of painting."""
     if depth > DEEPEST_FORM:
@@ -171,13 +186,16 @@ def _unfolded(
         page.count()
         one = get(index)
         kind = pdfium.FPDFPageObj_GetType(one)
+        own = _set_of(one, index, kind, outer)
+        if own in page.hidden:
+            continue
         within = _clipped(one, frame, clip, page)
         if within.is_empty:
             continue
         if kind == pdfium.FPDF_PAGEOBJ_FORM:
             inner = partial(pdfium.FPDFFormObj_GetObject, one)
             inside = frame @ _matrix(one)
-            yield from _unfolded(inner, pdfium.FPDFFormObj_CountObjects(one), inside, within, page, depth + 1)
+            yield from _unfolded(inner, pdfium.FPDFFormObj_CountObjects(one), inside, within, page, depth + 1, own)
         elif kind == pdfium.FPDF_PAGEOBJ_PATH:
             yield from _shape(one, frame @ _matrix(one), within, page)
         elif kind == pdfium.FPDF_PAGEOBJ_SHADING and isinstance(within, Polygon):
@@ -185,6 +203,51 @@ def _unfolded(
             yield Drawn((ring,), GREY, None, False, StrokeStyle(), "", _layer(one), None)
         page.has_text |= kind == pdfium.FPDF_PAGEOBJ_TEXT
         page.has_picture |= kind == pdfium.FPDF_PAGEOBJ_IMAGE
+
+
+def _set_of(one: Any, index: int, kind: int, outer: _Set) -> _Set:
+    form, layer = outer
+    return (index if kind == pdfium.FPDF_PAGEOBJ_FORM and form < 0 else form), _layer(one) or layer
+
+
+def _hidden(page: Any, size: tuple[float, float], budget: TimeBudget) -> frozenset[_Set]:
+    """The sets of objects that layers hide: PDFium paints each of them alone."""
+    sets: dict[_Set, list[Any]] = {}
+
+    def collect(get: Callable[[int], Any], count: int, outer: _Set, depth: int) -> None:
+        for index in range(min(count, MOST_OBJECTS)):
+            budget.check()
+            one = get(index)
+            kind = pdfium.FPDFPageObj_GetType(one)
+            own = _set_of(one, index, kind, outer)
+            if kind != pdfium.FPDF_PAGEOBJ_FORM:
+                sets.setdefault(own, []).append(one)
+            elif depth < DEEPEST_FORM:
+                inner = partial(pdfium.FPDFFormObj_GetObject, one)
+                collect(inner, pdfium.FPDFFormObj_CountObjects(one), own, depth + 1)
+
+    collect(partial(pdfium.FPDFPage_GetObject, page.raw), pdfium.FPDFPage_CountObjects(page.raw), (-1, ""), 0)
+    if len(sets) > MOST_SETS:
+        return frozenset()
+    scale = LOOKED_SIDE / max(size)
+    across, down = (max(round(scale * side), 1) for side in size)
+    objects = [one for some in sets.values() for one in some]
+    hidden = set()
+    for own, some in sets.items():
+        budget.check()
+        for one in objects:
+            pdfium.FPDFPageObj_SetIsActive(one, False)
+        for one in some:
+            pdfium.FPDFPageObj_SetIsActive(one, True)
+        bitmap = pypdfium2.PdfBitmap.new_native(across, down, pdfium.FPDFBitmap_BGRA)
+        bitmap.fill_rect((0, 0, 0, 0), 0, 0, across, down)
+        pdfium.FPDF_RenderPageBitmap(bitmap.raw, page.raw, 0, 0, across, down, 0, 0)
+        if not bitmap.to_numpy()[..., 3].any():
+            hidden.add(own)
+        bitmap.close()
+    for one in objects:
+        pdfium.FPDFPageObj_SetIsActive(one, True)
+    return frozenset(hidden)
 
 
 #: Paint of gradients and patterns, whose colours are not looked at.

@@ -26,13 +26,16 @@ from kirigami_studio.outlines.parts import (
     parts_of_region,
     stroked,
 )
-from kirigami_studio.outlines.source_file import TimeBudget, decoding, read_bytes
+from kirigami_studio.outlines.source_file import TimeBudget, decoded
 from kirigami_studio.outlines.svg_drawing import PIXELS_PER_MM, WHITE, Drawn, Paint, SvgDrawing, svg_drawing
 from kirigami_studio.outlines.svg_safety import checked_svg
 from kirigami_studio.outlines.text_curves import text_parts
 
+DAMAGED = "source.svg_damaged"
 #: An open stroke whose ends are nearer than this share of its size is meant to be closed.
 WIDEST_GAP = 0.02
+#: Opacity below which a shape is hardly seen, such as a shadow.
+FAINT = 0.3
 #: A white rectangle is paper if it covers this share of the page.
 PAPER = 0.9
 
@@ -51,10 +54,7 @@ def read_svg(path: str | Path) -> Outline:
         Not SVG, larger than 20 MB, with entities that are no plain texts, nothing drawn, several letters only, or an
         open contour.
     """
-    path = Path(path)
-    content = read_bytes(path)
-    with decoding(path, "source.svg_damaged"):
-        return usual_outline(_parts(path.stem, content))
+    return decoded(path, DAMAGED, lambda *file: usual_outline(_parts(*file)))
 
 
 def svg_parts(path: str | Path) -> SourceParts:
@@ -65,18 +65,15 @@ def svg_parts(path: str | Path) -> SourceParts:
     TargetError
         As :func:`read_svg`, but for open contours and letters.
     """
-    path = Path(path)
-    content = read_bytes(path)
-    with decoding(path, "source.svg_damaged"):
-        return _parts(path.stem, content)
+    return decoded(path, DAMAGED, _parts)
 
 
-def _parts(name: str, content: bytes) -> SourceParts:
+def _parts(path: Path, content: bytes) -> SourceParts:
     budget = TimeBudget()
     root, width_mm = checked_svg(content)
     unit = "px" if width_mm is None else "mm"
     read = svg_drawing(root, 1.0 if width_mm is None else 1.0 / PIXELS_PER_MM, budget)
-    return parts_of_drawing(name, read, unit, budget)
+    return parts_of_drawing(path.stem, read, unit, budget)
 
 
 def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget) -> SourceParts:
@@ -123,7 +120,9 @@ def _part(shape: Drawn, paint: Paint | None) -> Part:
     pen = shape.pen if shape.stroke is not None else StrokeStyle()
     rings = [chain for chain in shape.chains if len(chain) > 2]
     ring = rings[0] if len(rings) == 1 and shape.clip is None else None
-    return Part(0, shape.name, shape.layer, _colour(paint), DrawnPartKind.FILLED, Polygon(), lines, pen, ring=ring)
+    faint = max(one[3] for one in (shape.fill, shape.stroke) if one is not None) < FAINT
+    kind = DrawnPartKind.FILLED
+    return Part(0, shape.name, shape.layer, _colour(paint), kind, Polygon(), lines, pen, is_faint=faint, ring=ring)
 
 
 def _filled_parts(shape: Drawn) -> list[Part]:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TypeVar
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.files import read_at_most
 
 MEGABYTE = 1_000_000
+Decoded = TypeVar("Decoded")
 
 #: Seconds of processor time that one source may take to be read.
 MOST_SECONDS = 3.5
@@ -93,3 +95,19 @@ def decoding(path: Path, damaged: str) -> Iterator[None]:
     except Exception as error:
         reason = " ".join(UNREADABLE.sub("…", str(error)).split())[:160] or type(error).__name__
         raise TargetError(damaged, name=path.name, reason=reason) from error
+
+
+def decoded(
+    path: str | Path, damaged: str, decode: Callable[[Path, bytes], Decoded], most_megabytes: int = 20
+) -> Decoded:
+    """Read a file and decode it, its name in every problem.
+
+    Raises
+    ------
+    TargetError
+        As :func:`read_bytes` and :func:`decoding`.
+    """
+    path = Path(path)
+    content = read_bytes(path, most_megabytes)
+    with decoding(path, damaged):
+        return decode(path, content)

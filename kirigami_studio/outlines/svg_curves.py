@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import svgelements as untyped_svgelements
@@ -65,6 +66,48 @@ def flattened(path: Any, matrix: FloatArray) -> list[FloatArray]:
     return [
         np.concatenate([one if len(one) == 1 else flattened_curve(one, error) for one in chain]) for chain in segments
     ]
+
+
+class Vertex(NamedTuple):
+    """A vertex of a line, user units, and the direction in which the line passes it, radians."""
+
+    place: tuple[float, float]
+    way: float
+
+
+def vertices_of(path: Any) -> list[Vertex]:
+    """The vertices of an ``svgelements.Path``, where its segments begin and end."""
+    points: list[FloatArray] = []
+    before: list[FloatArray] = []  # directions in which each is reached, and left
+    behind: list[FloatArray] = []
+    for segment in path:
+        if segment.end is None:
+            continue
+        end = _points(segment.end)[0]
+        if isinstance(segment, svgelements.Move) or not points:
+            points.append(end)
+            before.append(np.zeros(2))
+            behind.append(np.zeros(2))
+            continue
+        line = np.concatenate([points[-1][None], *_controls(segment)])
+        ways = [way for way in np.diff(line, axis=0) if np.any(way)] or [np.zeros(2)]
+        behind[-1] = ways[0]
+        points.append(end)
+        before.append(ways[-1])
+        behind.append(np.zeros(2))
+    return turned(points, before, behind)
+
+
+def turned(points: Sequence[FloatArray], before: Sequence[FloatArray], behind: Sequence[FloatArray]) -> list[Vertex]:
+    """Vertices (2,) with directions that bisect those in which each is reached and left."""
+    found = []
+    for point, one, other in zip(points, before, behind, strict=True):
+        units = [way / length for way in (one, other) if (length := float(np.hypot(*way))) > 0.0]
+        way = np.sum(units, axis=0) if units else np.array([1.0, 0.0])
+        if not np.any(way):
+            way = units[0]
+        found.append(Vertex((float(point[0]), float(point[1])), float(np.arctan2(way[1], way[0]))))
+    return found
 
 
 def checked(corners: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ drawings, ``switch``, transforms, clip paths and masks are resolved here; the ca
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -21,10 +22,11 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
+from kirigami_studio.outlines.css_shapes import ELLIPSE_VERTICES, PLACES, basic_shape
 from kirigami_studio.outlines.parts import Cap, Corner, StrokeStyle, stroked
 from kirigami_studio.outlines.pieces import painted
 from kirigami_studio.outlines.source_file import TimeBudget
-from kirigami_studio.outlines.svg_curves import checked, flattened
+from kirigami_studio.outlines.svg_curves import Vertex, checked, flattened, turned, vertices_of
 from kirigami_studio.outlines.svg_safety import MM_PER_UNIT, reference_of, tag_of
 from kirigami_studio.outlines.svg_style import REFERENCE, Cascade, Properties, colour_of, computed, share_of
 from kirigami_studio.outlines.text_curves import Text
@@ -38,8 +40,6 @@ PIXELS_PER_MM = 96.0 / 25.4
 LEAST_SEEN = 0.01
 #: Levels of red, green and blue from which on paint is white.
 WHITE = 250.0 / 255.0
-#: Vertices of an ellipse: its chords are nearer to it than to what is flattened otherwise.
-ELLIPSE_VERTICES = 128
 #: Steps from one gradient to another that its stops may be taken from.
 MOST_LINKS = 8
 
@@ -51,8 +51,15 @@ GROUPS = frozenset({"g", "a", "svg", "switch", "use", "symbol"})
 SHAPES = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 LENGTH = re.compile(rf"\s*({NUMBER.pattern})\s*([a-zA-Z]*|%)\s*")
+#: Functions of CSS that change what is seen of a shape, and elements of filters that change colours alone.
+FILTERS = re.compile(r"blur|shadow", re.IGNORECASE)
+RECOLOURING = frozenset({"feColorMatrix", "feComponentTransfer", ""})
+#: Lines that have markers, how many are painted at most, and their lengths.
+MARKED, MOST_MARKERS = frozenset({"path", "line", "polyline", "polygon"}), 2_000
+MARKER_SIZE = ("markerWidth", "markerHeight")
+#: Letters of a shape of CSS that is looked at.
+LONGEST_SHAPE = 10_000
 TRANSFORM = re.compile(r"([a-zA-Z]+)\s*\(([^()]*)\)")
-PLACES = {"left": 0.0, "top": 0.0, "center": 0.5, "right": 1.0, "bottom": 1.0}
 Paint = tuple[float, float, float, float]
 
 
@@ -136,6 +143,7 @@ class _Painter:
         self._texts: list[Text] = []
         self._said: dict[str, str] = {}
         self._clips: dict[tuple[Element, bytes], BaseGeometry] = {}
+        self._marked = 0
 
     def drawing(self) -> SvgDrawing:
         size = self._page()
@@ -185,6 +193,8 @@ class _Painter:
         opacity = frame.opacity * share_of(style.get("opacity"))
         if style.get("display", "").strip() == "none" or (opacity < LEAST_SEEN and not frame.makes_clip):
             return
+        if not frame.makes_clip and self._changes_shape(style.get("filter", "none").strip()):
+            self._say("filter", tr("Filters such as blur and shadows were left out."))
         inner = replace(frame, style=style, opacity=opacity)
         inner = replace(inner, matrix=frame.matrix @ self._transform(element, inner))
         inner = self._clipped(element, inner)
@@ -195,6 +205,8 @@ class _Painter:
                 self._texts += self._lines(element, inner)
         elif tag in SHAPES:
             yield from self._shape(element, tag, inner)
+            if tag in MARKED and not frame.makes_clip and not frame.is_measured:
+                yield from self._markers(element, tag, inner)
         else:
             yield from self._group(element, tag, inner)
 
@@ -269,9 +281,66 @@ class _Painter:
             slack = 0.5 * width if stroke is not None else 0.0
             extent = shapely.box(*(corners.min(axis=0) - slack), *(corners.max(axis=0) + slack))
             clip = None if clip.covers(extent) else clip
-        if any(style.get(f"marker-{end}", "none").strip() != "none" for end in ("start", "mid", "end")):
-            self._say("marker", tr("Arrow heads and other markers on lines were left out."))
         yield Drawn(chains, fill, stroke, rule == "evenodd", pen, _name(element) or frame.name, frame.layer, clip)
+
+    def _markers(self, element: Element, tag: str, frame: _Frame) -> Iterator[Drawn]:
+        """Shapes of the markers on the vertices of a line."""
+        found: list[Element | None] = []
+        for end in ("start", "mid", "end"):
+            link = REFERENCE.match(frame.style.get(f"marker-{end}", "none"))
+            marker = None if link is None else self._named.get(link["name"])
+            found.append(None if marker is None or tag_of(marker) != "marker" or marker in frame.inside else marker)
+        if not any(one is not None for one in found) or frame.style.get("visibility", "visible").strip() != "visible":
+            return
+        width = self._length_of(frame.style.get("stroke-width", "1"), frame, None, 1.0)
+        vertices = self._vertices(element, tag, frame)
+        for index, vertex in enumerate(vertices):
+            marker = found[0 if index == 0 else 2 if index == len(vertices) - 1 else 1]
+            if marker is None:
+                continue
+            self._budget.check()
+            self._marked += 1
+            if self._marked > MOST_MARKERS:
+                self._say("marker", tr("Arrow heads and other markers on lines were left out."))
+                return
+            yield from self._marker(marker, vertex, width, index == 0, frame)
+
+    def _marker(self, marker: Element, vertex: Vertex, width: float, begins: bool, frame: _Frame) -> Iterator[Drawn]:
+        stated = marker.get("orient", "0").strip()
+        turn = vertex.way if stated.startswith("auto") else _angle(stated)
+        turn += np.pi if stated == "auto-start-reverse" and begins else 0.0
+        size = [self._length_of(marker.get(name, "3"), frame, axis, 3.0) for axis, name in enumerate(MARKER_SIZE)]
+        scale = 1.0 if marker.get("markerUnits", "").strip() == "userSpaceOnUse" else width
+        if not (np.isfinite(turn) and scale > 0.0 and min(size) > 0.0):
+            return
+        view = _viewport(marker, (0.0, 0.0, size[0], size[1]))
+        inner = self._view(marker, (size[0], size[1]))
+        origin = [
+            PLACES[word] * inner[axis] if (word := marker.get(name, "0").strip()) in PLACES else _number(word, 0.0)
+            for axis, name in enumerate(("refX", "refY"))
+        ]
+        across, down, _ = view @ (*origin, 1.0)
+        place = frame.matrix @ _moved(*vertex.place) @ np.diag([scale, scale, 1.0])
+        cos, sin = np.cos(turn), np.sin(turn)
+        place = place @ np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ _moved(-across, -down)
+        blank = _Frame(place @ view, inner, opacity=frame.opacity, clip=frame.clip, layer=frame.layer)
+        style = self._style(marker, blank)
+        if style.get("overflow", "hidden").strip() not in ("visible", "auto"):
+            window = Polygon(_placed(np.array([(x * size[0], y * size[1]) for x, y in CORNERS]), place))
+            blank = replace(blank, clip=window if frame.clip is None else window.intersection(frame.clip))
+        yield from self._children(marker, replace(blank, style=style, inside=(*frame.inside, marker)))
+
+    def _vertices(self, element: Element, tag: str, frame: _Frame) -> list[Vertex]:
+        """The vertices of a line in its user space."""
+        if tag == "path":
+            path = svgelements.Path()
+            with contextlib.suppress(ValueError, IndexError, TypeError, AttributeError, ArithmeticError):
+                path.parse(element.get("d", ""))
+            return vertices_of(path)
+        chains = self._chains(element, tag, replace(frame, matrix=np.eye(3)))
+        points = chains[0] if chains else np.zeros((0, 2))
+        ways = np.diff(points, axis=0)
+        return turned(points, [np.zeros(2), *ways], [*ways, np.zeros(2)])
 
     def _chains(self, element: Element, tag: str, frame: _Frame) -> list[FloatArray]:
         """The subpaths of a shape on the page."""
@@ -330,7 +399,9 @@ class _Painter:
             if text.lower() == "none":
                 return None
             paint = colour_of(text, style.get("color", "black"))
-            if paint is None and not text.lower().startswith("context-"):
+            if text.lower().startswith("context-"):
+                paint = (0.5, 0.5, 0.5, 1.0)  # of the line that a marker is on
+            elif paint is None:
                 paint = (0.0, 0.0, 0.0, 1.0) if kind == "fill" else None
         if paint is None or paint[3] * opacity < LEAST_SEEN:
             return None
@@ -354,6 +425,13 @@ class _Painter:
             server = other
         return None
 
+    def _changes_shape(self, stated: str) -> bool:
+        """Whether a filter does more than to change colours."""
+        if (link := REFERENCE.match(stated)) is None:
+            return FILTERS.search(stated) is not None
+        source = self._named.get(link["name"])
+        return source is not None and any(tag_of(one) not in RECOLOURING for one in source)
+
     # clip paths and masks --------------------------------------------------------------------------------------------
 
     def _clipped(self, element: Element, frame: _Frame) -> _Frame:
@@ -365,15 +443,36 @@ class _Painter:
                 continue
             link = REFERENCE.match(stated)
             source = self._named.get(link["name"]) if link is not None else None
-            if source is None or tag_of(source) != {"clip-path": "clipPath", "mask": "mask"}[kind]:
-                if link is None:
+            if link is None:
+                region = self._basic_shape(stated, element, frame) if kind == "clip-path" else None
+                if region is None:
                     self._say("clip", tr("Clip paths of other kinds are not followed. Cut the shape itself."))
-                continue
-            if source in frame.inside:
-                continue
-            region = self._region_of(source, element, frame)
+                    continue
+            else:
+                is_such = source is not None and tag_of(source) == {"clip-path": "clipPath", "mask": "mask"}[kind]
+                if source is None or not is_such or source in frame.inside:
+                    continue
+                region = self._region_of(source, element, frame)
             frame = replace(frame, clip=region if frame.clip is None else region.intersection(frame.clip))
         return frame
+
+    def _basic_shape(self, stated: str, element: Element, frame: _Frame) -> BaseGeometry | None:
+        """The region of a shape that CSS states, on the page; None where it is not understood."""
+        shape = basic_shape(stated[:LONGEST_SHAPE])
+        if shape is None:
+            return None
+        if shape.reference == "view-box":
+            box = (0.0, 0.0, *frame.view)
+        else:
+            box = self._extent(element, frame)
+            if shape.reference != "fill-box" and self._paint(frame.style, "stroke", 1.0) is not None:
+                half = 0.5 * self._length_of(frame.style.get("stroke-width", "1"), frame, None, 1.0)
+                box = (box[0] - half, box[1] - half, box[2] + half, box[3] + half)
+        found = shape.ring(box, lambda word, whole: self._length_of(word, frame, None, np.nan, whole))
+        if found is None:
+            return None
+        ring, is_even_odd = found
+        return painted([checked(_placed(ring, frame.matrix))], is_even_odd) if len(ring) else Polygon()
 
     def _region_of(self, source: Element, element: Element, frame: _Frame) -> BaseGeometry:
         """The region of a clip path or a mask for an element, on the page."""

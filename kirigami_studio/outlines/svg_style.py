@@ -45,7 +45,7 @@ INHERITED = frozenset(
 #: Properties that are attributes, too.
 PRESENTATION = (
     INHERITED
-    | {"clip-path", "display", "mask", "opacity", "overflow", "stop-color", "stop-opacity", "transform"}
+    | {"clip-path", "display", "filter", "mask", "opacity", "overflow", "stop-color", "stop-opacity", "transform"}
     | {"transform-origin", "vector-effect"}
 )
 FONT = re.compile(

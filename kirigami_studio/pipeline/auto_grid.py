@@ -41,7 +41,7 @@ COARSEST, FINEST = 6, 16
 #: The same of pinned sheets, whose pieces somebody has to put together.
 COARSEST_PINNED, FINEST_PINNED = 3, 10
 #: Distances between pins (unit cells) that sheets have room for.
-MOST_GAP = 0.42
+MOST_GAP = 0.375
 #: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
 FEWEST_VOIDS, FEWEST_PINNED = 99, 49
 #: The coarsest grid with at least this predicted match is taken.
@@ -411,7 +411,7 @@ class _Candidate:
 
 @lru_cache(maxsize=64)
 def panels_for_holes(target: Outline) -> float:
-    """How many panels a sheet needs so that holes and the walls around them are no smaller than panels allow."""
+    """Number of panels that holes and the walls beside them need."""
     if not target.holes:
         return 0.0
     widths = [2.0 * float(shapely.maximum_inscribed_circle(shapely.Polygon(hole)).length) for hole in target.holes]

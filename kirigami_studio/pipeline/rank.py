@@ -146,6 +146,10 @@ class Ranking:
         """The same with the trimmed IoU of a design that is trimmed."""
         return candidate.match - sum(self.prices(candidate).values())
 
+    def made_match(self, candidate: Candidate) -> float:
+        """Exact IoU of what is made of a design: trimmed, if it is; of its pieces where they are known."""
+        return candidate.match - (self.losses.get(candidate, 0.0) if self.least_gap_mm else 0.0)
+
     def key(self, candidate: Candidate) -> Key:
         """Sorting key; smaller is better."""
         score = candidate.score
@@ -188,14 +192,14 @@ class Ranking:
         if not candidates:
             return []
         first = candidates[0]
-        most = max(one.match for one in candidates if (one.trim is None) is (first.trim is None))
+        most = max(self.made_match(one) for one in candidates if (one.trim is None) is (first.trim is None))
         return [self._why_first(first, most), *(self._why_later(one, first) for one in candidates[1:])]
 
     def _why_first(self, first: Candidate, most: float) -> Note:
-        score, even = first.score, first.score.evenness
+        even = first.score.evenness
         if not self.cuttable(first):
             return self._why_not(first)
-        if first.trim is not None and first.trim.holes_open:
+        if first.trim is not None and first.trim.holes:
             return Note.of("rank.holes_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
         if first.trim is not None and first.trim.given_up:
             shares = {"match": 100 * first.match, "percent": 100 * first.given_up}
@@ -204,13 +208,14 @@ class Ranking:
             code = "rank.best_trimmed" if first.trim.iou >= most else "rank.best_balance_trimmed"
             return Note.of(code, match=100 * first.trim.iou, variation=100 * even.area_cv)
         plain, symmetric = "rank.best_balance", "rank.best_balance_symmetric"
-        if score.iou_exact >= most:
+        match = 100 * self.made_match(first)
+        if match >= 100 * most:
             plain, symmetric = "rank.best_match", "rank.best_match_symmetric"
         code = plain if first.symmetry is None else symmetric
         if first.second is not None:
             angle, second = math.degrees(first.second.target.phi), 100 * first.second.match.iou_exact
-            return Note.of("rank.best_of_both", match=100 * score.iou_exact, second=second, angle=angle)
-        return Note.of(code, match=100 * score.iou_exact, variation=100 * even.area_cv)
+            return Note.of("rank.best_of_both", match=match, second=second, angle=angle)
+        return Note.of(code, match=match, variation=100 * even.area_cv)
 
     def _why_later(self, one: Candidate, first: Candidate) -> Note:
         if not self.cuttable(one):
@@ -219,7 +224,9 @@ class Ranking:
             return Note.of("rank.not_trimmed")
         own, others = self.prices(one), self.prices(first)
         behind = {code: own[code] - others[code] for code in own}
-        behind["rank.less_match"] = first.match - one.match
+        behind["rank.less_match"] = self.made_match(first) - self.made_match(one)
+        if self.least_gap_mm:
+            del behind["rank.less_as_cut"]  # it is in the match
         code = max(behind, key=behind.__getitem__)
         if behind[code] < 5e-5:
             return Note.of("rank.equal")
@@ -227,7 +234,7 @@ class Ranking:
             return Note.of("rank.less_trimmed_match", match=100 * one.match, first=100 * first.match)
         even, best = one.score.evenness, first.score.evenness
         mine, theirs = {
-            "rank.less_match": (100 * one.match, 100 * first.match),
+            "rank.less_match": (100 * self.made_match(one), 100 * self.made_match(first)),
             "rank.less_even": (100 * even.area_cv, 100 * best.area_cv),
             "rank.thinner": (even.least_feature_mm(self.width_mm), best.least_feature_mm(self.width_mm)),
             "rank.more_at_limit": (100 * even.at_limit, 100 * best.at_limit),

@@ -176,8 +176,8 @@ class DesignChoices:
         default=0.5,
         metadata=Setting(
             about=mark(
-                "What comes first: the closest match on the left, even panels on the right. Moving the slider ranks "
-                "the designs again at once; letting it go fits them again."
+                "Left: the closest match. Right: even panels. Moving it ranks the designs, letting it go fits them "
+                "again."
             ),
             help="what ranking prefers, from 0, the best match, to 1, even panels (default: that of --prefer, 0.5)",
             least=0.0,

@@ -132,8 +132,7 @@ class FabricationSettings:
         default=100.0,
         metadata=Setting(
             about=mark(
-                "Width of the flat sheet, mm (5 to 3000). It follows the opened size, beside the target; a width typed "
-                "here stays. The grid sets the height."
+                "Width of the flat sheet, mm (5 to 3000). It follows the opened size; a width typed here stays."
             ),
             help="width of the flat sheet",
             least=0.0,

@@ -57,6 +57,8 @@ from kirigami_studio.mechanics.connectors import (
     tip_asides,
 )
 from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
+from kirigami_studio.mechanics.gripping import panels_to_pin
+from kirigami_studio.mechanics.path_contacts import contacts_on_way
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, material_for
@@ -67,6 +69,8 @@ MPA_PER_GPA = 1e3
 CLOSE_TO = math.radians(1.0)
 #: A connector counts as longer than a straight one above this (mm); coordinates are rounded to a tenth of it.
 LONGER_MM = 1e-3
+#: A sheet is closed so many times at most, each time with the contacts that the last time showed.
+MOST_CLOSINGS = 4
 #: The estimate's jam angles below this (radians) are those of contacts that close further: the sheet closes.
 ESTIMATE_CLOSES = math.radians(6.0)
 
@@ -386,6 +390,21 @@ def estimate(
     return _made(jam, phi, outcome, largest, judged, Source.ESTIMATE)
 
 
+def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tuple[int, int]:
+    """Panels of a pinned sheet, row by row, to hold and to pull: where its softest motions are largest.
+
+    Pins bend nothing and leave one motion, so that one of each is enough.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    sheet = _unplanned_sheet(deployment, settings, material_for(settings))
+    held, pulled = panels_to_pin(deployment, sheet, settings.width_mm, 2)
+    return held, pulled
+
+
 def motion_on_pins(phi: float, iou: float | None = None) -> AsCut:
     """Tell how a pinned design moves: all the way to ``phi`` (radians), without strain.
 
@@ -475,7 +494,7 @@ def simulate(
     design, deployment = deployment, plan.cut_from(deployment)
     sheet = planned_sheet(deployment, plan, width_mm, kept)
     yield
-    found = yield from closing_steps(sheet)
+    found = yield from _closed_with_contacts(sheet, plan, deployment, width_mm, kept)
     jam = found.jam_phi()
     lap = None
     if target is not None:
@@ -486,6 +505,28 @@ def simulate(
     panels = cut_panels(plan).moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
     as_cut = _simulated(plan, found, jam, phi, lap)
     return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made)
+
+
+def _closed_with_contacts(
+    sheet: SheetNetwork,
+    plan: CutPlan,
+    deployment: Deployment,
+    width_mm: float,
+    kept: Sequence[FloatArray | None] | None,
+) -> Generator[None, None, Closing]:
+    """Close a sheet, and close it again as long as panels ran through each other on the way."""
+    shift = _shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2)))
+    bodies, kerf = (cut_panels(plan), plan.kerf_mm) if plan.tiles is None else (_tiled(plan, deployment), 0.0)
+    panels = bodies.moved(shift).numbered(len(plan.panels))
+    found = yield from closing_steps(sheet)
+    for _ in range(MOST_CLOSINGS - 1):
+        more = contacts_on_way(panels, found, kerf)
+        if not len(more):
+            break
+        yield
+        sheet = sheet.with_meetings(more)
+        found = yield from closing_steps(sheet)
+    return found
 
 
 def simulated(

@@ -34,6 +34,9 @@ from kirigami_studio.settings.fabrication import (
 from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
 from kirigami_studio.studio.cutting import kerf_mm
 
+#: Weight of the target against the flat outline: pieces stick out of that one for it where it has area to spare.
+#: Printed sheets have none: gaps between their pieces take it.
+TARGET_FIRST = 0.75
 #: Assemblies that are kept: a design that is chosen again, or exported, has its pieces at once.
 MOST_KEPT = 48
 
@@ -57,6 +60,7 @@ def pin_options(settings: FabricationSettings) -> PinOptions:
         wall_mm=0.5 * (sizes.ear_mm - sizes.hole_mm) if printed else None,  # a joint needs all of its ear
         head_mm=sizes.head_mm,
         margin_mm=sizes.margin_mm,
+        weight=0.5 if printed else TARGET_FIRST,
         in_one_plane=printed,
     )
 
@@ -113,10 +117,13 @@ def assembled(
     Raises
     ------
     FabricationError
-        No such material, or pieces that cannot be made, or fall apart where only whole ones are wanted.
+        No such material, a target with holes, or pieces that cannot be made, or fall apart where only whole ones are
+        wanted.
     UsageError
         An ear that is no wider than its hole.
     """
+    if target.holes:
+        raise FabricationError("pinned.target_has_holes", count=len(target.holes))
     options, hold = pin_options(settings), hold_options(settings)
     machine = machine_for(settings) if options.in_one_plane else None
     key = (candidate, target, settings.width_mm, options, machine, hold, settings.moved_by)
@@ -129,7 +136,7 @@ def assembled(
             if machine is not None:
                 more = print_problems(plan, material_for(settings), machine)
                 report = replace(report, problems=(*more, *report.problems))
-            places = held(plan, hold) if machine is None else HeldPlaces()
+            places = held(plan, hold)
         except GEOSException as error:  # floating point ended the geometry of this one design
             raise FabricationError("pinned.not_made", reason=error) from error
         plan = replace(plan, assembly=with_places(plan.assembly, places.places))

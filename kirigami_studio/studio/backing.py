@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from shapely.errors import GEOSException
 
 from kirigami_studio.assembly.backed import BackedSheet, Board, Jig
+from kirigami_studio.assembly.holding import HeldPlaces, held_tiles, with_places
+from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.tile_checks import TileReport, check_tiles
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport, check_plan, machine_problems
@@ -15,7 +17,13 @@ from kirigami_studio.fabricate.machine import Machine
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
-from kirigami_studio.settings.fabrication import FabricationSettings, machine_for, material_for, named_machine
+from kirigami_studio.settings.fabrication import (
+    FabricationSettings,
+    hold_options,
+    machine_for,
+    material_for,
+    named_machine,
+)
 from kirigami_studio.settings.layers import board_layer
 from kirigami_studio.studio.cutting import least_tile_mm
 
@@ -31,6 +39,8 @@ class Backing:
     machine: Machine
     kerf_mm: float
     report: TileReport
+    assembly: Assembly  #: tiles with the holes of the places that hold them
+    held: HeldPlaces
 
 
 def backing_of(plan: CutPlan, deployment: Deployment, phi: float, settings: FabricationSettings) -> Backing:
@@ -59,12 +69,14 @@ def backing_of(plan: CutPlan, deployment: Deployment, phi: float, settings: Fabr
     try:
         sheet = BackedSheet.of(plan, deployment, phi, plan.tiles)
         jig = sheet.jig(settings.board_cut, [bed for _, bed in beds])
-        board = sheet.board(jig)
+        held = held_tiles(sheet.assembly, hold_options(cut), sheet.between_mm)
+        assembly = with_places(sheet.assembly, held.places)
+        board = sheet.board(jig, assembly)
         report = check_tiles(sheet, board, kerf, least_tile_mm(material), list(dict.fromkeys(beds)))
     except GEOSException as error:  # floating point ended the geometry of this one design
         raise FabricationError("pinned.not_made", reason=error) from error
-    problems = (*report.problems, *machine_problems(named_machine(cut), material))
-    return Backing(sheet, jig, board, material, machine, kerf, replace(report, problems=problems))
+    problems = (*report.problems, *machine_problems(named_machine(cut), material), *held.problems)
+    return Backing(sheet, jig, board, material, machine, kerf, replace(report, problems=problems), assembly, held)
 
 
 def checked_plan(

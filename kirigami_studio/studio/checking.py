@@ -121,7 +121,7 @@ class Checked:
         if self.said is not None:
             found.append(tr("verdict when it was exported: {level}", level=self.said.words))
         one_sheet = record is not None and record.construction == ONE_SHEET
-        if self.verdict is None and (one_sheet or (pieces is not None and pieces.construction != Construction.BACKED)):
+        if self.verdict is None and (one_sheet or record is not None or pieces is not None):
             found.append(
                 tr("not checked: whether the sheet closes and its material holds; name its project by --design")
             )
@@ -147,10 +147,10 @@ def checked(path: Path, document: Document | None = None) -> Checked:
         The project has no chosen design.
     """
     report = check_file(path)
-    # One layer of a backed design says nothing about how all of it moves.
-    backed = Construction.BACKED in {one.construction for one in (report.record, report.of_pieces) if one is not None}
-    if document is None or backed or not _is_cut_file(report):
+    if document is None or not _is_cut_file(report):
         return Checked(report)
+    if _is_backed(report):
+        return _checked_backed([report], document)[0]
     if report.of_pieces is not None:
         return _checked_beds([report], document)[0]
     request, unlike = _request(report.record, path, document)
@@ -179,7 +179,82 @@ def checked_together(paths: Sequence[Path], document: Document | None = None) ->
     reports = [check_file(path) for path in paths]
     if document is not None and len(reports) > 1 and all(report.of_pieces is not None for report in reports):
         return _checked_beds(reports, document)
+    if document is not None and len(reports) > 1 and all(map(_is_backed, reports)):
+        return _checked_backed(reports, document)
     return tuple(checked(path, document) for path in paths)
+
+
+def _is_backed(report: FileReport) -> bool:
+    """Whether a file is that of a layer of a backed design."""
+    records = (one for one in (report.record, report.of_pieces) if one is not None)
+    return Construction.BACKED.value in {one.construction for one in records}
+
+
+def _checked_backed(reports: Sequence[FileReport], document: Document) -> tuple[Checked, ...]:
+    """Compare the files of tiles and hinge layer with both layers of their design, and judge them together."""
+    from kirigami_studio.export.assembly_files import read_bed, read_hinge_layer
+    from kirigami_studio.export.pieces_read import KnownOutlines
+
+    request, unlike = _request_of_layers(reports, document)
+    try:
+        made = planned(request)
+        job = made.layers
+        if job is None or job.glued is None:
+            raise FabricationError("export.no_chosen_design")
+        board, known = job.beds[0], KnownOutlines()
+        found = [
+            read_hinge_layer(job, job.glued, report.path)
+            if report.of_pieces is None
+            else read_bed(job, board, report.path, known)[0]
+            for report in reports
+        ]
+    except (FabricationError, UsageError) as error:
+        return tuple(Checked(report, None, refused(error)) for report in reports)
+    layers = {"layer-1" if report.of_pieces is None else board.name for report in reports}
+    missing = sorted({"layer-1", board.name} - layers)
+    notes = (Note.of("check.beds_missing", beds=", ".join(missing)),) if missing else ()
+    verdict = judged(request, made, closed(request, made), found)
+    verdict = replace(verdict, problems=(*unlike, *verdict.problems), notes=(*verdict.notes, *notes))
+    return tuple(Checked(report, one, verdict) for report, one in zip(reports, found, strict=True))
+
+
+def _request_of_layers(reports: Sequence[FileReport], document: Document) -> tuple[CutRequest, tuple[Problem, ...]]:
+    """Design of the layers of a backed sheet, made as their records say, and a problem where the project lacks it."""
+    saved = document.fabrication
+    hinge = next((report.record for report in reports if report.record is not None), None)
+    board = next((report.of_pieces for report in reports if report.of_pieces is not None), None)
+    wanted = replace(saved, construction=Construction.BACKED, opened_mm=None)
+    keys = [one.material for one in (hinge, board) if one is not None]
+    own = next((key for key in keys if key == saved.material), keys[0])
+    others = [key for key in keys if key != own]
+    wanted = replace(wanted, material=own, second_material=others[0] if others else saved.second_material)
+    if hinge is not None:
+        wanted = replace(
+            wanted,
+            width_mm=hinge.width_mm,
+            connector_mm=hinge.connector_mm,
+            options=hinge.options,
+            profile=hinge.profile.key,
+            kerf_mm=hinge.kerf_mm if own == hinge.material else saved.kerf_mm,
+        )
+    elif board is not None:
+        wanted = replace(wanted, width_mm=board.width_mm or saved.width_mm, profile=board.profile.key)
+    if board is not None and own == board.material and not board.profile.slots:
+        wanted = replace(wanted, kerf_mm=board.kerf_mm)
+    design = hinge.design if hinge is not None else board.design if board is not None else ""
+    found = _design_of(document, design)
+    if found is None:
+        found = next(
+            (
+                number
+                for number, candidate in enumerate(document.candidates)
+                if design_hash(deploy(candidate.final_sheet), ()) == design
+            ),
+            None,
+        )
+    unlike = () if found is not None else (Problem.error("check.other_design", design=design),)
+    chosen = document if found is None else replace(document, chosen=found)
+    return CutRequest.of(chosen, wanted), unlike
 
 
 def _checked_beds(reports: Sequence[FileReport], document: Document) -> tuple[Checked, ...]:

@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from kirigami_studio.assembly.backed import LEAST_TILE_MM
 from kirigami_studio.assembly.checks import PinnedReport
+from kirigami_studio.assembly.sheet_marks import with_marks
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
@@ -21,8 +24,10 @@ from kirigami_studio.fabricate.tiles import TileSizes
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.mechanics.connectors import flexure_length
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
+    hold_options,
     material_for,
     named_machine,
     stored_values,
@@ -56,10 +61,15 @@ def plan_of(
     FabricationError
         No such material, or a plan that cannot be made.
     """
-    trim, settings = candidate.trim, hinge_layer(settings)
+    trim, is_one_sheet, settings = candidate.trim, not is_backed(settings), hinge_layer(settings)
     kept = None if trim is None else trim.kept
-    plan = plan_sheet(deployment or deploy(candidate.final_sheet), settings, kept, cancel)
-    return replace(engraved(plan, name), name=name) if settings.engrave and name else plan
+    motion = deployment or deploy(candidate.final_sheet)
+    plan = plan_sheet(motion, settings, kept, cancel)
+    if settings.engrave and name:
+        plan = replace(engraved(plan, name), name=name)
+    if is_one_sheet and settings.held_by is not HoldKind.NONE:
+        plan = with_marks(plan, motion, candidate.final_phi, hold_options(settings))
+    return plan
 
 
 def plan_sheet(
@@ -81,7 +91,7 @@ def plan_sheet(
     """
     tiles = None
     if is_backed(settings):
-        tiles = TileSizes(settings.gap_mm, least_mm=least_tile_mm(material_for(board_layer(settings))))
+        tiles = TileSizes(settings.gap_mm, least_mm=_board_tile_mm(settings))
     settings = hinge_layer(settings)
     machine = named_machine(settings)
     plan = plan_cuts(
@@ -97,12 +107,7 @@ def plan_sheet(
     )
     told = [note for pair in stored_values(settings) if (note := unlike(*pair)) is not None]
     told += [
-        Note.of(code)
-        for code, wanted in (
-            ("hold.only_on_pins", settings.held_by is not HoldKind.NONE),
-            ("drive.only_on_pins", settings.moved_by is not DriveKind.NONE),
-        )
-        if wanted
+        Note.of(code) for code, wanted in (("drive.only_on_pins", settings.moved_by is not DriveKind.NONE),) if wanted
     ]
     if settings.machine and machine is None:
         told.append(Note.of("plan.machine_unknown", name=settings.machine, machine=plan.machine.name))
@@ -140,10 +145,14 @@ def check_connectors(candidate: Candidate, options: CutOptions) -> None:
 #: or stretch: at 1 mm on sheets of 100 mm, designs of a heart, a butterfly and a gear cannot be cut without this room,
 #: and close with it.
 ROOM_IN_WIDTHS = 2.75
+#: Panels have room for their least tile times this: bows reach into panels, and tiles with narrower necks are left out.
+TILE_ROOM = 1.1
 
 
 def least_feature_mm(settings: FabricationSettings) -> float:
     """Least panel edge and neck, between centre lines of cuts, that the settings' materials allow.
+
+    Where tiles are left out round connectors, an edge between two of them has room for the least tile.
 
     Raises
     ------
@@ -154,8 +163,14 @@ def least_feature_mm(settings: FabricationSettings) -> float:
     material = material_for(cut)
     least = max(material.min_ligament_mm, material.min_panel_mm)
     if is_backed(settings):
-        least = max(least, least_tile_mm(material_for(board_layer(settings))) + 2.0 * settings.gap_mm)
+        relief = float(flexure_length(np.array(_connector_mm(cut, material)), kerf_mm(cut, material)))
+        inset, tile = TileSizes(settings.gap_mm).inset_mm(kerf_mm(cut, material)), _board_tile_mm(settings)
+        least = max(least, tile + 2.0 * relief, TILE_ROOM * tile + 2.0 * inset)
     return least + kerf_mm(cut, material)
+
+
+def _board_tile_mm(settings: FabricationSettings) -> float:
+    return least_tile_mm(material_for(board_layer(settings)))
 
 
 def least_tile_mm(board: Material) -> float:
@@ -173,8 +188,11 @@ def room_mm(settings: FabricationSettings) -> float:
     """
     cut = hinge_layer(settings)
     material = material_for(cut)
-    connector = material.connector_mm if cut.connector_mm is None else cut.connector_mm
-    return ROOM_IN_WIDTHS * connector + kerf_mm(cut, material)
+    return ROOM_IN_WIDTHS * _connector_mm(cut, material) + kerf_mm(cut, material)
+
+
+def _connector_mm(settings: FabricationSettings, material: Material) -> float:
+    return material.connector_mm if settings.connector_mm is None else settings.connector_mm
 
 
 def kerf_mm(settings: FabricationSettings, material: Material) -> float:

@@ -95,7 +95,7 @@ class Fix:
     @property
     def line(self) -> str:
         """The change, and the verdict that it leads to."""
-        return Note.of("fix.then", change=self.change.text, level=self.verdict.level.words).text
+        return Note.of("fix.then", change=self.change.text, level=self.verdict.level_words).text
 
     def edit(self, document: Document) -> Edit:
         """Make the change, as one step that can be undone; a design that is gone leaves the choice as it is."""

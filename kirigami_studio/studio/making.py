@@ -204,7 +204,7 @@ class CutRequest:
     @property
     def has_layers(self) -> bool:
         """Whether its files are those of several layers, in a folder."""
-        return self.is_pinned or is_backed(self.settings)
+        return has_pieces(self.settings)
 
     @property
     def facts(self) -> Mapping[str, str]:
@@ -215,6 +215,11 @@ class CutRequest:
     def artwork(self) -> Artwork | None:
         """What is printed on the sheet."""
         return None if self.document is None else self.document.artwork
+
+
+def has_pieces(settings: FabricationSettings) -> bool:
+    """Whether a design is made of pieces on pins, or of tiles on cloth."""
+    return is_pinned(settings) or is_backed(settings)
 
 
 def chosen_candidate(document: Document) -> Candidate:
@@ -282,6 +287,7 @@ class MadePieces:
     made: Assembled
     job: AssemblyJob | PrintJob
     verdict: Verdict
+    grips: tuple[int, int]  #: panels to hold and to pull, row by row
 
     @property
     def report(self) -> PinnedReport:
@@ -295,8 +301,16 @@ class MadePieces:
 
         cut = self.cutting
         if cut is None:
-            return PosedPieces.of(self.made.plan, self.job.material)
-        return PosedPieces.of(self.made.plan, cut.material, cut.fastener, self.made.held.places)
+            found = PosedPieces.of(self.made.plan, self.job.material, holds=self.made.held.places)
+        else:
+            found = PosedPieces.of(self.made.plan, cut.material, cut.fastener, self.made.held.places)
+        return replace(found, grips=self.grips)
+
+    @cached_property
+    def on_board(self) -> PosedPieces:
+        """The same with the board and the arms that move them, if there are any."""
+        drive = self.made.drive
+        return self.posed if drive is None else replace(self.posed, assembly=drive.assembly)
 
     @property
     def printing(self) -> PrintJob | None:
@@ -346,9 +360,13 @@ class MadePieces:
 
 def laid_beds(job: AssemblyJob) -> tuple[LaidBed, ...]:
     """Pieces on each bed of what is cut."""
+    from kirigami_studio.export.cut_bed import LAYERS
+
     return tuple(
         LaidBed(
-            tr("Layer {layer}, bed {bed}", layer=bed.layer, bed=bed.number),
+            tr("Board and arms, bed {bed}", bed=bed.number)
+            if bed.layer > LAYERS
+            else tr("Layer {layer}, bed {bed}", layer=bed.layer, bed=bed.number),
             tuple((cuts.piece, place) for cuts, place in bed.placed),
             bed.size_mm,
         )
@@ -364,6 +382,7 @@ def pieces_of(request: CutRequest) -> MadePieces:
     FabricationError, UsageError
         No such material, or sizes that do not go together.
     """
+    from kirigami_studio.studio.as_cut import grips_on_pins
     from kirigami_studio.studio.assembling import assembled
     from kirigami_studio.studio.verdict import judge_assembled
 
@@ -374,7 +393,9 @@ def pieces_of(request: CutRequest) -> MadePieces:
     shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
     verdict = judge_assembled(request.candidate, made, settings)
     job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
-    return MadePieces(made, job, verdict)
+    grips = grips_on_pins(made.assembly.deployment, settings)
+    names = [made.assembly.pieces[panel].id for panel in grips]
+    return MadePieces(made, replace(job, grips=(names[0], names[1])), verdict, grips)
 
 
 def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> PrintJob:
@@ -390,6 +411,8 @@ def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> Print
         paper=settings.paper,
         target=shown,
         provenance=request.facts,
+        hold=hold_options(settings),
+        holds=made.held.places,
     )
 
 
@@ -425,7 +448,7 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdi
 
 
 def posed_pieces(request: CutRequest) -> PosedPieces | None:
-    """The pieces of a design over its target; None for one that is not made of pieces.
+    """The pieces of a design over its target, or its tiles on cloth; None for one that is not made of pieces.
 
     Raises
     ------
@@ -433,10 +456,20 @@ def posed_pieces(request: CutRequest) -> PosedPieces | None:
         No such material, or sizes that do not go together.
     """
     from kirigami_studio.assembly.posed_pieces import PosedPieces
+    from kirigami_studio.evaluate.posed_design import PosedDesign
     from kirigami_studio.studio.assembling import assembled
 
-    if request.target is None or not request.is_pinned:
+    if request.target is None or not request.has_layers:
         return None
+    if not request.is_pinned:
+        layers, pose = planned(request).layers, request.candidate.final_pose
+        if layers is None or layers.glued is None:
+            return None
+        sheet, phi = layers.glued.sheet, request.candidate.final_phi
+        design = PosedDesign(request.deployment, pose, phi)
+        if sheet.deployment is not request.deployment:
+            design = design.laid_over(sheet.deployment)
+        return PosedPieces.on_cloth(sheet, layers.assembly, design, layers.material, layers.holds)
     made = assembled(request.candidate, request.settings, request.target)
     return PosedPieces.of(made.plan, material_for(request.settings), request.settings.fastener, made.held.places)
 
@@ -582,11 +615,12 @@ def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:
     from kirigami_studio.project.store import packed_design
 
     settings, sheet, target = request.settings, backing.sheet, None
+    hold = hold_options(board_layer(settings))
     if request.target is not None:
         back = request.candidate.final_pose.inverse()
         target = tuple(back.apply(ring) * sheet.cell_mm for ring in request.target.rings)
     return AssemblyJob(
-        sheet.assembly,
+        backing.assembly,
         backing.material,
         backing.machine,
         settings.fastener,
@@ -601,9 +635,11 @@ def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:
         paper=settings.paper,
         order=settings.options.order,
         target=target,
+        hold=hold,
+        holds=backing.held.places,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
-        glued=Glued(sheet, backing.board, backing.material, backing.jig.cut),
+        glued=Glued(sheet, backing.board, backing.material, backing.jig.cut, backing.held.places),
     )
 
 
@@ -760,6 +796,8 @@ def written(
         verified, files = tuple(found_in_files), tuple(places)
     else:
         job, verified = replace(job, verdict=judged(request, made, as_cut).level.value), ()
+        if motion is None and made.layers is not None and not kind_of(path.suffix.lower()).cuts:
+            job = replace(job, pieces=posed_pieces(request))
         files = export_files(job, path)
     verdict = judged(request, made, as_cut, verified)
     place = files[0]
@@ -920,7 +958,8 @@ def animating(
         except KirigamiError as error:
             why = str(error)
     shown = None if sheet is None or motion is Motion.IDEAL else sheet.motion
-    written = export(replace(picture_job(request), motion=shown), path)
+    job = picture_job(request) if shown is None else export_job(request, None)
+    written = export(replace(job, motion=shown), path)
     yield ExportedFiles(written, None, motion=shown, not_as_cut=why)
 
 

@@ -23,8 +23,6 @@ from kirigami_studio.studio.targets import TargetRead, design_of, reading_target
 
 #: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
 DRAWN = 1.0 / 3000.0
-#: A shape in a picture is one to be asked about from this share of the largest one's area on; many make noise.
-ISLAND, MOST_ISLANDS = 0.1, 20
 
 
 class Purpose(Enum):
@@ -110,7 +108,7 @@ def _asks(source: str) -> bool:
     """Whether a picture has no plain shape, or several large ones; one of specks is refused by its reader."""
     from PIL import Image
 
-    from kirigami_studio.outlines.read_image import MOST_PIXELS_IN_COLOUR, image_parts, is_plain_picture
+    from kirigami_studio.outlines.read_image import MOST_PIXELS_IN_COLOUR, image_parts, is_alone, is_plain_picture
 
     try:
         with Image.open(source) as picture:
@@ -125,8 +123,7 @@ def _asks(source: str) -> bool:
             return True
     except KirigamiError:
         return False
-    areas = sorted((part.worth for part in parts), reverse=True)
-    return len(areas) > 1 and areas[1] >= ISLAND * areas[0] and areas[0] >= 0.5 * sum(areas[MOST_ISLANDS:])
+    return not is_alone([part.worth for part in parts])
 
 
 def reading_parts(source: str, cancel: Cancel) -> Iterator[PartsRead]:

@@ -13,10 +13,13 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
+from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.strain import StrainFigure, strain_note
 from kirigami_studio.foundation.errors import Cancelled, KirigamiError
@@ -25,7 +28,7 @@ from kirigami_studio.foundation.words import mark, number, tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, is_printed
 from kirigami_studio.studio.as_cut import (
     CLOSE_TO,
     ESTIMATE_CLOSES,
@@ -107,6 +110,7 @@ class Level(Enum):
 
 
 _WORDS = {Level.READY: mark("Ready to cut"), Level.CARE: mark("Cut with care"), Level.FAILS: mark("Will not work")}
+_PRINTED = {Level.READY: mark("Ready to print"), Level.CARE: mark("Print with care")}
 Told = TypeVar("Told", bound=Note)
 #: From best to worst.
 RANK = {level: place for place, level in enumerate(Level)}
@@ -150,7 +154,9 @@ _ANSWERS = {
     (Question.FILES, AnswerState.OPEN): mark("no files read yet"),
 }
 #: Findings that answer a question; files have those of their reading, the material all others.
-_MATCH_FINDINGS = frozenset({"as_cut.loses_match", "as_cut.does_not_match"})
+_MATCH_FINDINGS = frozenset(
+    {"as_cut.loses_match", "as_cut.does_not_match", "trim.hole_too_small", "trim.hole_holds_sheet"}
+)
 _CLOSING_FINDINGS = frozenset(
     {
         NEARLY,
@@ -201,11 +207,17 @@ class Verdict:
     as_cut: AsCut | None = None  #: How it does as cut, by the same source; None where that is not known
     match: float | None = None  #: IoU with the target: as cut where that is known, else as designed
     read: bool = False  #: Whether its files were read back
+    printed: bool = False  #: Whether it is printed and not cut
 
     @property
     def level(self) -> Level:
         """By the worst of the problems."""
         return _level_of(self.problems)
+
+    @property
+    def level_words(self) -> str:
+        """The level, as it is shown of what is cut or printed."""
+        return tr(_PRINTED[self.level]) if self.printed and self.level in _PRINTED else self.level.words
 
     @property
     def ok(self) -> bool:
@@ -221,8 +233,8 @@ class Verdict:
     def words(self) -> str:
         """The level, marked where it is an estimate."""
         if not self.is_estimate:
-            return self.level.words
-        return tr("{level} (estimate)", level=self.level.words) if self.is_checked else tr("Not checked yet")
+            return self.level_words
+        return tr("{level} (estimate)", level=self.level_words) if self.is_checked else tr("Not checked yet")
 
     @property
     def is_checked(self) -> bool:
@@ -388,13 +400,14 @@ class CloseLook:
     refusal: Note | None
     #: How it does as cut; None where nobody had to look so far, or where that cannot be told
     as_cut: AsCut | None = None
+    gained: float = 0.0  #: Match (IoU) that pieces on pins have beyond their sheet
 
     @property
     def loss(self) -> float:
         """Worth (IoU) lost by being cut: match, and for the stretch of its connectors."""
         if self.as_cut is None:
             return 0.0
-        return (self.as_cut.lost or 0.0) + STRETCH * self.as_cut.stretch
+        return (self.as_cut.lost or 0.0) + STRETCH * self.as_cut.stretch - self.gained
 
 
 def look_at(candidate: Candidate, settings: FabricationSettings, target: Outline | None = None) -> CloseLook:
@@ -445,7 +458,8 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made, settings)
-    return CloseLook(None if found.ok else found.problems[0], made.as_cut)
+    gained = made.report.figures.match - candidate.score.iou_exact
+    return CloseLook(None if found.ok else found.problems[0], made.as_cut, gained)
 
 
 def refused(error: KirigamiError) -> Verdict:
@@ -477,6 +491,7 @@ def judge(
     problems = [
         *_of_files(verifications, candidate.final_phi, known),
         *_of_design(candidate),
+        *_of_holes(candidate, plan.size_mm[0]),
         *(_weighed(problem) for problem in report.problems if problem.code not in STRAINED),
         *_of_wishes(plan),
         *_of_jam(known),
@@ -499,6 +514,7 @@ def judge(
         known,
         match_of(candidate, known),
         bool(verifications),
+        MachineKind.of(plan.material.machine) is MachineKind.PRINTER,
     )
 
 
@@ -526,6 +542,7 @@ def judge_assembled(
         made.as_cut,
         made.as_cut.iou,
         bool(verifications),
+        is_printed(settings),
     )
 
 
@@ -547,6 +564,7 @@ def expected(
     refusal = ranking.refusals.get(candidate)
     problems = [
         *_of_design(candidate),
+        *_of_holes(candidate, ranking.width_mm),
         *_of_room(candidate, ranking),
         *([] if refusal is None else _of_refusal(refusal)),
         *_of_jam(as_cut),
@@ -589,6 +607,23 @@ def _of_wishes(plan: CutPlan) -> list[Problem]:
 def _of_design(candidate: Candidate) -> list[Problem]:
     """A sheet that was fitted for trimming is free of contacts; its score is that of the sheet before."""
     return [] if candidate.score.feasible or candidate.trim is not None else [Problem.error("rank.not_feasible")]
+
+
+def _of_holes(candidate: Candidate, width_mm: float) -> list[Problem]:
+    """Holes of the target that the trimmed sheet does not show, and where on it they would be."""
+    trim = candidate.trim
+    if trim is None or not trim.closed_holes:
+        return []
+    flat = deploy(trim.sheet).compact
+    low, scale = flat.min(axis=0), width_mm / float(np.ptp(flat[:, 0]))
+    problems = []
+    for small in (True, False):
+        closed = [hole for hole in trim.closed_holes if hole.is_small is small]
+        if closed:
+            x, y = ((np.array(closed[0].place) - low) * scale).tolist()
+            code, where = "trim.hole_too_small" if small else "trim.hole_holds_sheet", {"x": x, "y": y}
+            problems.append(Problem.warning(code, (x, y), count=len(closed), total=len(trim.holes), **where))
+    return problems
 
 
 def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:

@@ -21,6 +21,7 @@ from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -88,7 +89,7 @@ def unstyled() -> None:
 
 @pytest.fixture
 def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
-    """An empty studio; closing it must leave nothing running."""
+    """An empty studio on the page of designs; closing it must leave nothing running."""
     unstyled()
     # Off screen, Qt hands a move of the pointer to the first window that holds its place: one that a test has left
     # open would take it.  And it tells of no move to where the pointer is, which is where an earlier test left it.
@@ -99,6 +100,7 @@ def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
     made = create_window(LIGHT, file_dialogs=files)
     with qtbot.waitExposed(made):
         made.show()
+    made.pages.turn(Page.DESIGN)
     for button in (Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton):
         QTest.mouseRelease(made, button, pos=QPoint(1, made.height() - 2))  # a test may have kept it pressed
     QTest.mouseMove(made, QPoint(1, made.height() - 2))

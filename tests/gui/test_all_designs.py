@@ -43,7 +43,7 @@ def table(designed: MainWindow) -> AllDesigns:
     """The three designs on the table, opened by its key."""
     QTest.keyClick(designed.stage.view, KEY.Key_A)
     page = designed.presenters.all_designs.page
-    assert page is not None and page.isVisible() and not designed.columns.splitter.isVisible()
+    assert page is not None and page.isVisible() and not designed.pages.splitter.isVisible()
     page.filters.grouped.setChecked(False)
     return page
 
@@ -62,11 +62,11 @@ def names(page: AllDesigns) -> list[str]:
 def test_that_the_table_opens_at_the_chosen_design_and_closes_again(designed: MainWindow, table: AllDesigns) -> None:
     assert table.table.hasFocus() and table.table.current == designed.session.document.candidate
     press(table, KEY.Key_Escape)
-    assert not designed.presenters.all_designs.shown and designed.columns.splitter.isVisible()
+    assert not designed.presenters.all_designs.shown and designed.pages.splitter.isVisible()
     QTest.mouseClick(designed.gallery.bar.all, LEFT)
     assert designed.presenters.all_designs.shown
     QTest.mouseClick(table.close_button, LEFT)
-    assert designed.columns.splitter.isVisible() and designed.stage.view.hasFocus()
+    assert designed.pages.splitter.isVisible() and designed.stage.view.hasFocus()
 
 
 def test_that_arrows_move_and_enter_takes_the_design_to_the_stage(
@@ -92,10 +92,10 @@ def test_that_a_double_click_takes_a_design_and_a_click_does_not(
 
 
 def test_that_letters_of_the_window_do_nothing_out_of_sight(designed: MainWindow, table: AllDesigns) -> None:
-    overlays, cuts = designed.stage.view.overlays, designed.stage.showing_cuts
+    overlays, page = designed.stage.view.overlays, designed.pages.page
     for key in (KEY.Key_T, KEY.Key_M, KEY.Key_E, KEY.Key_D, KEY.Key_J, KEY.Key_B):
         QTest.keyClick(table.table, key)
-    assert designed.stage.view.overlays == overlays and designed.stage.showing_cuts is cuts
+    assert designed.stage.view.overlays == overlays and designed.pages.page is page
     assert designed.presenters.all_designs.shown and not designed.target.editing
 
 
@@ -358,4 +358,4 @@ def test_that_an_empty_window_says_what_to_do(window: MainWindow, tmp_path: Path
     assert page is not None and page.isVisible() and page.table.hint().startswith("No designs yet")
     assert not page.use.isEnabled() and not page.alike.isEnabled()
     press(page, KEY.Key_C, KEY.Key_Return, KEY.Key_1, KEY.Key_Escape)
-    assert window.columns.isVisible()
+    assert window.pages.isVisible()

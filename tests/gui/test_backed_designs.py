@@ -14,7 +14,7 @@ Until = Callable[[Callable[[], bool]], None]
 def test_that_a_backed_design_shows_both_layers_and_its_tiles_at_every_angle(
     designed: MainWindow, until: Until
 ) -> None:
-    panel, cuts, view = designed.fabrication, designed.stage.cuts, designed.stage.view
+    panel, cuts, view = designed.fabrication, designed.cuts, designed.stage.view
     assert not cuts.beds.isVisibleTo(cuts) and not panel.options.files.fields["second_material"].isEnabled()
     designed.services.fabrication.change(material="plywood-co2", construction="backed", width_mm=300.0)
     until(lambda: cuts.beds.isVisibleTo(cuts) and not designed.services.verdict.busy)

@@ -80,10 +80,12 @@ def test_that_show_everything_shows_the_whole_drawing_however_far_it_was_moved(p
 
 
 def test_that_keys_show_the_real_size_the_selection_and_everything(plate: MainWindow, qtbot: QtBot) -> None:
+    plate.resize(1200, 800)
+    QApplication.processEvents()
     view, fitted = plate.target.view, transform(plate)
-    qtbot.keyClick(view, Qt.Key.Key_1)
+    qtbot.keyClick(plate, Qt.Key.Key_1, Qt.KeyboardModifier.ControlModifier)
     assert transform(plate).scale == pytest.approx(view.screen().physicalDotsPerInch() / 25.4)
-    qtbot.keyClick(view, Qt.Key.Key_2)
+    qtbot.keyClick(plate, Qt.Key.Key_2, Qt.KeyboardModifier.ControlModifier)
     (left, bottom), (right, top) = pixel(plate, (-20, -10)), pixel(plate, (20, 10))
     room = view.scene_box()  # between the rulers
     assert right - left > 0.8 * room.width() or bottom - top > 0.8 * room.height()
@@ -105,6 +107,7 @@ def test_that_zoom_commands_belong_to_the_board_while_it_is_open_and_to_the_stag
     designed.commands["zoom_out"].trigger()
     assert view.transform() is not None and transform(designed).scale == pytest.approx(opened.scale / 1.2)
     designed.commands["edit_target"].trigger()
+    QApplication.processEvents()  # the page lays itself out
     now = stage.transform()
     assert now is not None and now.scale == pytest.approx(after.scale, rel=0.01)
 
@@ -122,6 +125,6 @@ def test_that_board_stage_and_cuts_have_menus_by_mouse_and_by_key(designed: Main
     menu.close()
     designed.commands["edit_target"].trigger()
     designed.commands["cuts"].trigger()
-    menu = menu_of(stage.cuts.view)
+    menu = menu_of(designed.cuts.view)
     assert designed.commands["copy_cuts"] in menu.actions()
     menu.close()

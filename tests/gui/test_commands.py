@@ -88,14 +88,13 @@ def test_that_a_button_is_its_command(designed: MainWindow) -> None:
         (stage.trim, "trim"),
         (stage.hand, "hand"),
         (stage.before, "before"),
-        (stage.cuts_switch, "cuts"),
         (stage.plots_switch, "plots"),
         (stage.toggles[Overlay.TARGET], "show_target"),
         (designed.gallery.bar.compare, "compare"),
     ):
         assert button.defaultAction() is commands[name]
         assert (button.isEnabled(), button.isChecked()) == (commands[name].isEnabled(), commands[name].isChecked())
-    stage.cuts_switch.click()
-    assert commands["cuts"].isChecked() and stage.showing_cuts and not stage.hand.isVisible()
-    commands["cuts"].trigger()
-    assert not stage.cuts_switch.isChecked() and not stage.showing_cuts
+    stage.plots_switch.click()
+    assert commands["plots"].isChecked() and stage.plots.isVisible()
+    commands["plots"].trigger()
+    assert not stage.plots_switch.isChecked() and not stage.plots.isVisible()

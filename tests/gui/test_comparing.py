@@ -198,9 +198,9 @@ def test_that_the_key_compares_with_the_next_card_and_leaves_again(
     qtbot.keyClick(designed, Qt.Key.Key_K)
     assert pair(designed) == designs.candidates[:2] and designed.stage.compare.isVisible()
     qtbot.keyClick(designed, Qt.Key.Key_C)
-    assert designed.stage.showing_cuts and not designed.stage.comparing and not designed.gallery.bar.compare.isChecked()
+    assert designed.cuts.isVisible() and not designed.stage.comparing and not designed.gallery.bar.compare.isChecked()
     qtbot.mouseClick(designed.gallery.bar.compare, LEFT)
-    assert designed.stage.comparing and not designed.stage.showing_cuts and not designed.stage.cuts_switch.isChecked()
+    assert designed.stage.comparing and not designed.cuts.isVisible() and designed.gallery.isVisible()
     qtbot.mouseClick(designed.stage.compare.leave, LEFT)
     assert designed.stage.view.isVisible() and not designed.commands["compare"].isChecked()
 
@@ -229,8 +229,10 @@ def test_that_the_chosen_card_is_not_compared_with_itself(designed: MainWindow, 
 @pytest.mark.parametrize("page", ["compare", "cuts"])
 def test_that_closing_ends_what_plays_on_every_page(page: str, designed: MainWindow) -> None:
     designed.commands[page].trigger()
-    designed.stage.player.play.setChecked(True)
-    assert designed.stage.player is not designed.stage.deployment and designed.stage.player.play.isChecked()
+    player = designed.pages.player
+    player.play.setChecked(True)
+    assert player is not designed.stage.deployment and player.play.isChecked()
+    designed.stage.view.setFocus()  # what plays need not have the keyboard
     # the fixture closes the window and looks for timers
 
 
@@ -325,21 +327,21 @@ def test_that_leaving_leads_back_to_the_table(marked: MainWindow, key: Qt.Key) -
     table = marked.presenters.all_designs
     assert table.shown and table.page is not None and table.page.table.hasFocus() and not marked.stage.comparing
     qtbot_key(table.page.table, Qt.Key.Key_Escape)
-    assert marked.gallery.isVisible() and marked.target.isVisible() and marked.columns.isVisible()
+    assert marked.gallery.isVisible() and marked.target.isVisible() and marked.pages.isVisible()
 
 
 def test_that_the_columns_come_back_as_they_were(designed: MainWindow, designs: Document) -> None:
-    designed.columns.splitter.setSizes([300, 700, 400])
-    designed.columns._keep_sizes()  # as the user has left them
-    before = designed.columns.splitter.sizes()
+    designed.pages.splitter.setSizes([300, 700, 400])
+    designed.pages._keep_sizes()  # as the user has left them
+    before = designed.pages.splitter.sizes()
     designed.presenters.comparison.compare(designs.candidates)
     QApplication.processEvents()
-    assert designed.columns.splitter.sizes()[0] == designed.columns.splitter.sizes()[2] == 0
+    assert designed.pages.splitter.sizes()[0] == designed.pages.splitter.sizes()[2] == 0
     designed.target.set_editing(True)
     assert designed.target.isVisible() and not designed.stage.comparing
     designed.target.set_editing(False)
     QApplication.processEvents()
-    assert designed.columns.splitter.sizes() == before
+    assert designed.pages.splitter.sizes() == before
 
 
 def test_that_three_designs_lose_one_that_is_gone(marked: MainWindow, designs: Document) -> None:

@@ -30,7 +30,8 @@ LEFT, SHIFT = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.ShiftModifier
 @pytest.fixture
 def cutting(designed: MainWindow, qtbot: QtBot) -> MainWindow:
     designed.resize(1440, 900)
-    qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
+    designed.resize(1440, 900)
+    designed.commands["cuts"].trigger()
     QApplication.processEvents()
     return designed
 
@@ -54,7 +55,7 @@ def fabrication(window: MainWindow) -> FabricationSettings:
 
 
 def test_that_clicks_select_one_connector_or_more(cutting: MainWindow, qtbot: QtBot) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     first, second = lonely(page, 2)
     qtbot.mouseClick(page.view, LEFT, pos=place(page, first))
     assert page.view.selected == {first} and page.hinges.selection_text.text() == f"Connector {first}"
@@ -67,7 +68,7 @@ def test_that_clicks_select_one_connector_or_more(cutting: MainWindow, qtbot: Qt
 
 
 def test_that_a_band_selects_what_is_inside(cutting: MainWindow, qtbot: QtBot) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     transform = page.view.transform()
     assert transform is not None and page._plan is not None
     low, high = np.array([12.0, 12.0]), np.array([61.0, 55.0])
@@ -83,7 +84,7 @@ def test_that_a_band_selects_what_is_inside(cutting: MainWindow, qtbot: QtBot) -
 
 
 def test_that_a_drag_without_shift_moves_the_picture_and_keeps_the_selection(cutting: MainWindow, qtbot: QtBot) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     page.view.gestures.select(frozenset({2}))
     before = page.view.transform()
     qtbot.mousePress(page.view, LEFT, pos=QPoint(4, 4))
@@ -95,7 +96,7 @@ def test_that_a_drag_without_shift_moves_the_picture_and_keeps_the_selection(cut
 def test_that_a_typed_width_reaches_the_plan_and_undoes_in_one_step(
     cutting: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     page.view.setFocus()
     page.view.gestures.select(frozenset({3, 7}))
     for letter in "0.3":
@@ -113,7 +114,7 @@ def test_that_a_typed_width_reaches_the_plan_and_undoes_in_one_step(
 
 
 def test_that_steps_of_the_number_are_one_undo_step(cutting: MainWindow) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     page.view.gestures.select(frozenset({5}))
     for _ in range(4):
         page.hinges.width_mm.stepUp()
@@ -123,7 +124,7 @@ def test_that_steps_of_the_number_are_one_undo_step(cutting: MainWindow) -> None
 
 
 def test_that_delete_cuts_through_and_reset_brings_the_usual_width_back(cutting: MainWindow, qtbot: QtBot) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     cutting.services.fabrication.set_hinge_width(frozenset({4, 9}), 0.5)
     page.view.setFocus()
     page.view.gestures.select(frozenset({4}))
@@ -138,13 +139,13 @@ def test_that_delete_cuts_through_and_reset_brings_the_usual_width_back(cutting:
 
 
 def test_that_delete_without_a_selection_changes_nothing(cutting: MainWindow, qtbot: QtBot) -> None:
-    cutting.stage.cuts.view.setFocus()
-    qtbot.keyClick(cutting.stage.cuts.view, Qt.Key.Key_Delete)
+    cutting.cuts.view.setFocus()
+    qtbot.keyClick(cutting.cuts.view, Qt.Key.Key_Delete)
     assert cutting.session.history.undo_label is None
 
 
 def test_that_zero_still_fits_while_nothing_is_selected(cutting: MainWindow, qtbot: QtBot) -> None:
-    view = cutting.stage.cuts.view
+    view = cutting.cuts.view
     view.setFocus()
     before = view.transform()
     view.zoom(2.0)
@@ -153,7 +154,7 @@ def test_that_zero_still_fits_while_nothing_is_selected(cutting: MainWindow, qtb
 
 
 def test_that_escape_forgets_the_selection_and_arrows_walk(cutting: MainWindow, qtbot: QtBot) -> None:
-    view = cutting.stage.cuts.view
+    view = cutting.cuts.view
     view.setFocus()
     qtbot.keyClick(view, Qt.Key.Key_Right)
     assert view.selected == {0}
@@ -166,7 +167,7 @@ def test_that_escape_forgets_the_selection_and_arrows_walk(cutting: MainWindow, 
 
 
 def test_that_rules_select_what_they_name(cutting: MainWindow) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     plan = page._plan
     assert plan is not None
     found = {}
@@ -186,14 +187,14 @@ def test_that_rules_select_what_they_name(cutting: MainWindow) -> None:
 
 
 def test_that_hovering_tells_number_and_widths(cutting: MainWindow) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     hinge = lonely(page, 1)[0]
     told = page.view._hover(QPointF(place(page, hinge)))
     assert told == f"Connector {hinge}: 0.200 mm requested, 0.200 mm finished"
 
 
 def test_that_hidden_connectors_take_no_clicks(cutting: MainWindow, qtbot: QtBot) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     hinge = lonely(page, 1)[0]
     page.toggles[list(page.toggles)[1]].setChecked(False)
     qtbot.mouseClick(page.view, LEFT, pos=place(page, hinge))
@@ -209,7 +210,7 @@ def drag(page: CutsPage, qtbot: QtBot, start: QPoint, way: QPoint, steps: int = 
 
 
 def test_that_a_drag_makes_connectors_wider_and_is_one_undo_step(cutting: MainWindow, qtbot: QtBot) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     first, second = lonely(page, 2)
     usual = float(page._plan.hinges.requested_mm[first])  # type: ignore[union-attr]
     qtbot.mouseClick(page.view, LEFT, pos=place(page, first))
@@ -230,7 +231,7 @@ def test_that_a_drag_makes_connectors_wider_and_is_one_undo_step(cutting: MainWi
 
 
 def test_that_a_click_on_one_of_many_selects_that_one(cutting: MainWindow, qtbot: QtBot) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     first, second = lonely(page, 2)
     page.view.gestures.select(frozenset({first, second}))
     qtbot.mouseClick(page.view, LEFT, pos=place(page, second))
@@ -240,7 +241,7 @@ def test_that_a_click_on_one_of_many_selects_that_one(cutting: MainWindow, qtbot
 def test_that_a_double_click_cuts_a_connector_through_and_brings_it_back(
     cutting: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     (hinge,) = lonely(page, 1)
     transform = page.view.transform()
     for removed in ((hinge,), ()):
@@ -259,7 +260,7 @@ def test_that_a_drag_stays_within_the_widths_that_there_are(fine: bool, way: flo
 
 
 def test_that_ctrl_a_selects_every_connector_while_they_are_shown(cutting: MainWindow, qtbot: QtBot) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     every = frozenset(range(len(page._plan.hinges))) if page._plan is not None else frozenset()
     page.view.setFocus()
     qtbot.keyClick(page.view, Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier)
@@ -267,7 +268,7 @@ def test_that_ctrl_a_selects_every_connector_while_they_are_shown(cutting: MainW
 
 
 def test_that_a_connector_that_is_cut_through_is_called_so(cutting: MainWindow, qtbot: QtBot, until: Until) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     first, second = lonely(page, 2)
     page.view.gestures.select(frozenset({first}))
     qtbot.keyClick(page.view, Qt.Key.Key_Delete)

@@ -12,8 +12,8 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
-from kirigami_studio.gui.make.fabrication_panel import Extent
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.project import store
 from kirigami_studio.settings.fabrication import FabricationSettings
 
@@ -29,18 +29,18 @@ def pick(box: QComboBox, value: object) -> None:
 
 
 @pytest.fixture
-def options(designed: MainWindow, qtbot: QtBot) -> MainWindow:
+def options(designed: MainWindow) -> MainWindow:
     designed.resize(1440, 1000)
-    qtbot.mouseClick(designed.fabrication.options.fold, LEFT)
+    designed.pages.turn(Page.MAKE)
     return designed
 
 
-def test_that_the_options_are_folded_until_asked_for(designed: MainWindow, qtbot: QtBot) -> None:
+def test_that_all_options_are_in_sight_on_the_page_of_making(designed: MainWindow, qtbot: QtBot) -> None:
     designed.resize(1440, 1000)
     panel = designed.fabrication.options
-    assert panel.fold.isVisible() and not panel.style_.isVisible()
-    qtbot.mouseClick(panel.fold, LEFT)
-    assert panel.style_.isVisible() and panel.profile.isVisible()
+    assert not panel.style_.isVisible()
+    qtbot.keyClick(designed, Qt.Key.Key_3)
+    assert panel.style_.isVisible() and panel.profile.isVisible() and panel.copies.isVisible()
 
 
 def test_that_every_style_order_and_profile_is_on_offer(options: MainWindow) -> None:
@@ -91,9 +91,9 @@ def test_that_a_profile_of_a_newer_program_is_shown_by_its_key(options: MainWind
 
 
 def test_that_every_control_has_a_name_and_a_tooltip(options: MainWindow) -> None:
-    page = options.stage.cuts
+    page = options.cuts
     parts: list[QWidget] = [
-        *options.fabrication.options.content.findChildren(QComboBox),
+        *options.fabrication.options.findChildren(QComboBox),
         options.fabrication.options.tabs,
         options.fabrication.options.tab_mm,
         options.fabrication.options.copies,
@@ -116,11 +116,9 @@ def test_that_every_control_has_a_name_and_a_tooltip(options: MainWindow) -> Non
 def test_that_a_short_window_scrolls_the_options_instead_of_squeezing_them(options: MainWindow, qtbot: QtBot) -> None:
     options.resize(1280, 720)
     panel = options.fabrication
-    if panel.extent is Extent.EXPORT:
-        qtbot.mouseClick(panel.fold, LEFT)
     qtbot.waitUntil(lambda: panel.scrolled.verticalScrollBar().maximum() > 0)
     assert panel.options.style_.height() >= panel.options.style_.sizeHint().height() - 1
-    assert panel.export.isVisible() and options.gallery.view.viewport().height() > 100
+    assert panel.export.isVisible() and options.cuts.view.height() > 100
 
 
 def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
@@ -136,7 +134,7 @@ def test_that_copies_are_an_undo_step_fill_the_file_and_are_saved(
     assert int(options.fabrication.numbers["slits"].text()) == 3 * cuts
     assert panel.rows.text().startswith("3 copies") and "3 copies in the file" in panel.rows.toolTip()
     assert panel.copy_gap.isEnabled()
-    bounds = options.stage.cuts.view.scene_bounds()
+    bounds = options.cuts.view.scene_bounds()
     assert bounds is not None and bounds.right > 200.0 and bounds.top > 160.0
     with qtbot.waitSignal(services.exporter.exported, timeout=30_000) as written:
         services.exporter.export(tmp_path / "three.dxf")

@@ -20,6 +20,7 @@ from kirigami_studio.gui.make.cut_view import CutOverlay, CutView
 from kirigami_studio.gui.widgets.legends import round_length
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 
@@ -35,7 +36,7 @@ def plan_of(rows: int, columns: int, **changes: float) -> CutPlan:
 @pytest.fixture
 def cutting(designed: MainWindow, qtbot: QtBot) -> MainWindow:
     """A studio that shows the cuts of its design."""
-    qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
+    designed.commands["cuts"].trigger()
     QApplication.processEvents()
     return designed
 
@@ -62,14 +63,14 @@ def burnt(image: QImage, view: CutView, place: tuple[float, float], along: tuple
     return sum(abs(colour.red() - sheet.red()) > 60 for colour in colours)
 
 
-def test_that_a_key_and_a_button_switch_between_layout_and_cuts(designed: MainWindow, qtbot: QtBot) -> None:
-    stage = designed.stage
-    assert stage.view.isVisible() and not stage.cuts.view.isVisible()
+def test_that_a_key_goes_to_the_sheet_as_it_is_cut_and_back(designed: MainWindow, qtbot: QtBot) -> None:
+    stage, cuts = designed.stage, designed.cuts
+    assert stage.view.isVisible() and not cuts.view.isVisible()
     qtbot.keyClick(designed, Qt.Key.Key_C)
-    assert stage.showing_cuts and stage.cuts.view.isVisible() and not stage.view.isVisible()
-    assert designed.commands["cuts"].isChecked() and stage.cuts.toggles[CutOverlay.TRAVEL].isVisible()
-    qtbot.mouseClick(stage.cuts_switch, LEFT)
-    assert not stage.showing_cuts and stage.deployment.isVisible() and not designed.commands["cuts"].isChecked()
+    assert designed.pages.page is Page.MAKE and cuts.view.hasFocus() and cuts.toggles[CutOverlay.TRAVEL].isVisible()
+    assert stage.view.isVisible() and stage.deployment.isVisible(), "stage and slider stay in view"
+    qtbot.keyClick(designed, Qt.Key.Key_C)
+    assert designed.pages.page is Page.DESIGN and stage.view.hasFocus() and not cuts.isVisible()
 
 
 @pytest.mark.parametrize("kerf", [0.5, 2.0])
@@ -108,7 +109,7 @@ def test_that_the_last_step_ends_with_the_plans_own_time_and_length() -> None:
 
 
 def test_that_a_step_shows_the_cuts_so_far_and_the_one_under_way(cutting: MainWindow, qtbot: QtBot) -> None:
-    bar, view = cutting.stage.cuts.bar, cutting.stage.cuts.view
+    bar, view = cutting.cuts.bar, cutting.cuts.view
     whole = view.grab().toImage()
     assert bar.count.text() == f"{bar.slider.maximum()} / {bar.slider.maximum()}"
     bar.slider.setFocus()
@@ -124,8 +125,8 @@ def test_that_a_step_shows_the_cuts_so_far_and_the_one_under_way(cutting: MainWi
 
 
 def test_that_space_plays_the_cutting_while_it_is_shown(cutting: MainWindow, qtbot: QtBot, until: Until) -> None:
-    bar = cutting.stage.cuts.bar
-    qtbot.keyClick(cutting.stage.cuts.view, Qt.Key.Key_Space)
+    bar = cutting.cuts.bar
+    qtbot.keyClick(cutting.cuts.view, Qt.Key.Key_Space)
     assert bar.playing and not cutting.stage.deployment.playing
     until(lambda: 0 < bar.slider.value() < bar.slider.maximum())
     qtbot.keyClick(cutting, Qt.Key.Key_C)
@@ -133,7 +134,7 @@ def test_that_space_plays_the_cutting_while_it_is_shown(cutting: MainWindow, qtb
 
 
 def test_that_travel_is_drawn_when_asked_for(cutting: MainWindow, qtbot: QtBot) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     without = page.view.grab().toImage()
     qtbot.mouseClick(page.toggles[CutOverlay.TRAVEL], LEFT)
     assert CutOverlay.TRAVEL in page.view.overlays
@@ -143,7 +144,7 @@ def test_that_travel_is_drawn_when_asked_for(cutting: MainWindow, qtbot: QtBot) 
 def test_that_a_problem_in_the_list_leads_to_its_place_and_back(
     cutting: MainWindow, qtbot: QtBot, until: Until
 ) -> None:
-    page = cutting.stage.cuts
+    page = cutting.cuts
     assert not page.problems.isVisible()
     cutting.services.fabrication.change(connector_mm=0.03)
     until(lambda: page.problems.isVisible())
@@ -163,7 +164,7 @@ def test_that_a_problem_in_the_list_leads_to_its_place_and_back(
 
 
 def test_that_a_refused_plan_leaves_the_last_picture_and_says_so(cutting: MainWindow, until: Until) -> None:
-    view = cutting.stage.cuts.view
+    view = cutting.cuts.view
     before = view.grab().toImage()
     cutting.fabrication.lengths["connector_mm"].setValue(19.0)
     until(lambda: not cutting.fabrication.export.isEnabled())
@@ -217,7 +218,7 @@ def test_that_every_step_of_a_large_job_is_drawn(qtbot: QtBot) -> None:
 
 
 def test_that_the_wheel_and_zero_work_as_in_the_layout(cutting: MainWindow, qtbot: QtBot) -> None:
-    view = cutting.stage.cuts.view
+    view = cutting.cuts.view
     before = view.transform()
     view.zoom(3.0, QPointF(QPoint(50, 60)))
     assert view.transform() != before

@@ -128,7 +128,7 @@ def test_that_the_board_has_the_keys_as_soon_as_it_opens(heart: MainWindow, qtbo
     heart.commands["edit_target"].trigger()
     assert heart.focusWidget() is heart.target.view
     qtbot.keyClick(heart.focusWidget(), Qt.Key.Key_Escape)
-    assert not heart.target.editing and heart.focusWidget() is heart.stage.welcome
+    assert not heart.target.editing and heart.focusWidget() is heart.stage.view
 
 
 def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: MainWindow, qtbot: QtBot) -> None:

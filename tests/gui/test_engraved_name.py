@@ -14,6 +14,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.project import candidate_edits, store
 
 Until = Callable[[Callable[[], bool]], None]
@@ -21,17 +22,17 @@ LEFT = Qt.MouseButton.LeftButton
 
 
 @pytest.fixture
-def shown(designed: MainWindow, qtbot: QtBot, until: Until) -> MainWindow:
-    """The cuts of a design, with the options unfolded."""
+def shown(designed: MainWindow, until: Until) -> MainWindow:
+    """The page on which a design is made."""
     designed.resize(1440, 1000)
-    qtbot.mouseClick(designed.fabrication.options.fold, LEFT)
+    designed.pages.turn(Page.MAKE)
     until(lambda: plan_of(designed) is not None)
     return designed
 
 
 def plan_of(window: MainWindow) -> CutPlan | None:
     """The plan that the cuts' page shows."""
-    drawing = window.stage.cuts.view._drawing
+    drawing = window.cuts.view._drawing
     return None if drawing is None else drawing.plan
 
 
@@ -57,8 +58,7 @@ def test_that_the_box_engraves_the_name_and_undo_takes_it_off(shown: MainWindow,
 
 
 def test_that_the_cut_view_shows_the_name_in_its_own_colour(shown: MainWindow, until: Until) -> None:
-    shown.commands["cuts"].trigger()
-    view = shown.stage.cuts.view
+    view = shown.cuts.view
     before = [chip.text for chip in view._chips()]
     assert pixels_in(view.grab().toImage(), LIGHT.engraved) == 0
     shown.fabrication.options.engrave.click()

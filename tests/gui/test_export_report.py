@@ -61,8 +61,8 @@ def test_that_an_export_opens_a_report_that_blocks_nothing(
     assert report is not None and report.isVisible() and not report.isModal()
     assert report.shown.ok and report.verdict.text().startswith("Verified")
     assert report.facts["Pieces"].text() == "1" and report.facts["Size with overcuts"].text().startswith("100.")
-    qtbot.mouseClick(designed.stage.cuts_switch, LEFT)
-    assert designed.stage.showing_cuts
+    designed.commands["cuts"].trigger()
+    assert designed.cuts.isVisible()
     qtbot.mouseClick(report.shut, LEFT)
     assert not report.isVisible()
 

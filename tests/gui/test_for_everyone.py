@@ -74,8 +74,8 @@ def board(window: MainWindow) -> QWidget:
 
 
 def cuts(window: MainWindow) -> QWidget:
-    window.stage.cuts_switch.click()
-    return window.stage
+    window.commands["cuts"].trigger()
+    return window.cuts
 
 
 def whole(window: MainWindow) -> QWidget:
@@ -150,10 +150,9 @@ def test_that_tab_visits_every_column_from_left_to_right_and_comes_back(designed
         designed.settings.rows,
         designed.settings.search,
         designed.run.generate,
-        designed.stage.cuts_switch,
+        designed.stage.plots_switch,
         designed.stage.deployment.slider,
         designed.gallery.view,
-        designed.fabrication.export,
     ):
         assert wanted in visited, wanted.objectName()
     columns = [
@@ -168,7 +167,7 @@ def test_that_tab_visits_every_column_from_left_to_right_and_comes_back(designed
 
 
 def parts(window: MainWindow) -> tuple[QWidget, ...]:
-    return window.target, window.settings, window.stage, window.gallery, window.fabrication
+    return window.target, window.settings, window.stage, window.gallery
 
 
 @pytest.mark.parametrize("palette", [LIGHT, DARK], ids=["light", "dark"])

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, QLocale
 from PySide6.QtGui import QKeySequence
-from PySide6.QtWidgets import QDialogButtonBox, QLabel, QMenu, QPushButton
+from PySide6.QtWidgets import QApplication, QDialogButtonBox, QLabel, QMenu, QPushButton
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.words import language, number, tr
@@ -23,6 +23,7 @@ from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.project import preferences
 from tests.gui.test_parts import LOGO, opened, written
 
@@ -193,14 +194,15 @@ def test_that_the_empty_gallery_is_german(window: MainWindow) -> None:
 
 @pytest.mark.usefixtures("german")
 def test_that_the_welcome_page_is_german(window: MainWindow) -> None:
-    page = window.stage.welcome
-    assert page.headline.text() == "Mit einem Ziel beginnen"
-    assert page.offers["edit_target"].text() == "Form zeichnen" and page.guide.text() == "Handbuch"
+    page = window.welcome
+    assert page.title.text() == "Beginnen" and page.offers["open_target"].text() == "Datei öffnen"
 
 
 def without_room(designed: MainWindow) -> None:
-    designed.resize(1280, 720)
+    designed.pages.turn(Page.MAKE)
+    designed.resize(1000, 640)
     material, order = designed.fabrication.material, designed.gallery.bar.order
+    QApplication.processEvents()
     assert material.currentText().startswith(material.shown_text().removesuffix("…"))
     assert material.shown_text().endswith("…") and order.shown_text() == order.currentText()
     designed.status_text.setText(100 * "words ")

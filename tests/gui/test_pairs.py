@@ -1,4 +1,4 @@
-"""File > Examples of pairs: twelve finished designs, opened with their start and target."""
+"""Examples of pairs on the first page: twelve finished designs, opened with their start and target."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Until = Callable[[Callable[[], bool]], None]
 def test_that_a_pair_opens_with_start_target_and_a_design_that_moves(window: MainWindow, until: Until) -> None:
     session = window.session
     window.target.start.entries["pairs"].trigger()
-    gallery = window.dialogs.pairs
-    assert gallery is not None and gallery.isVisible() and not gallery.complete
+    gallery = window.welcome.pairs
+    assert gallery.isVisible() and not gallery.complete
     until(lambda: gallery.complete)
     assert gallery.list.count() == 12 and all(not gallery.list.item(row).icon().isNull() for row in range(12))
     item = gallery.list.item(0)
@@ -29,7 +29,7 @@ def test_that_a_pair_opens_with_start_target_and_a_design_that_moves(window: Mai
     gallery.list.setFocus()
     QTest.keyClick(gallery.list, Qt.Key.Key_Return)
     until(lambda: session.stage is not None)
-    assert not gallery.isVisible()
+    assert not gallery.isVisible() and window.stage.isVisible(), "the design is on its page"
     document = session.document
     assert document.target is not None
     assert (document.settings.start.name, document.target.name) == ("circle", "heart")
@@ -44,13 +44,12 @@ def test_that_pairs_are_drawn_in_the_colours_of_the_theme_and_ask_before_work_is
 ) -> None:
     services = window.services
     window.commands["pairs"].trigger()
-    gallery = window.dialogs.pairs
-    assert gallery is not None
+    gallery = window.welcome.pairs
     until(lambda: gallery.complete)
-    light = gallery.list.item(5).icon().pixmap(294, 98).toImage()
+    light = gallery.list.item(5).icon().pixmap(258, 86).toImage()
     window.appearance.set_theme(DARK)
     until(lambda: gallery.complete)
-    dark = gallery.list.item(5).icon().pixmap(294, 98).toImage()
+    dark = gallery.list.item(5).icon().pixmap(258, 86).toImage()
     assert light.size() == dark.size() and light != dark
 
     services.settings.change(k=3)
@@ -65,7 +64,6 @@ def test_that_pairs_are_drawn_in_the_colours_of_the_theme_and_ask_before_work_is
 
 def test_that_every_bundled_pair_is_listed(window: MainWindow, until: Until) -> None:
     window.commands["pairs"].trigger()
-    gallery = window.dialogs.pairs
-    assert gallery is not None
+    gallery = window.welcome.pairs
     until(lambda: gallery.complete)
     assert [pair.path for pair in gallery.pairs] == sorted(resource("pairs").glob("*.kiri"))

@@ -114,7 +114,7 @@ def test_that_overlays_can_be_left_out_and_stay_on_the_screen(designed: MainWind
     assert (np.abs(seen - bare).max(axis=2) > 30).sum() > 500, "the target's outline and the mismatch are gone"
     assert view.overlays == overlays and not view.rendering
     designed.commands["cuts"].trigger()
-    cuts = designed.stage.cuts.view
+    cuts = designed.cuts.view
     cuts.gestures.select(frozenset({1, 2}))
     picturing.record(cuts)
     assert cuts.selected == {1, 2}

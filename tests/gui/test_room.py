@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QPoint, QRect, QSettings, Qt
+from PySide6.QtCore import QPoint, QRect
 from PySide6.QtWidgets import QApplication, QToolBar, QToolButton, QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.gui.make.fabrication_panel import Extent
 from kirigami_studio.gui.session.messages import Message, Tone
-from kirigami_studio.gui.widgets.theme import LIGHT
-from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.gui.window.stage_panel import LOW
 
 Until = Callable[[Callable[[], bool]], None]
@@ -29,17 +26,8 @@ def resized(window: MainWindow, width: int, height: int) -> None:
 def test_that_the_smallest_window_shows_more_than_one_row_of_whole_cards(designed: MainWindow) -> None:
     resized(designed, 1000, 640)
     view = designed.gallery.view
-    assert designed.fabrication.extent is Extent.EXPORT
     assert view.viewport().height() >= 1.5 * view.cards.card.height()
     assert designed.stage.width() >= 330
-
-
-def test_that_a_roomy_window_shows_all_numbers(designed: MainWindow) -> None:
-    resized(designed, 1000, 640)
-    resized(designed, 1600, 1000)
-    assert designed.fabrication.extent is not Extent.EXPORT and designed.fabrication.numbers["slits"].isVisible()
-    assert not designed.fabrication.summary.isVisible()
-    assert designed.fabrication.options.fold.isVisible()
 
 
 @pytest.mark.parametrize(
@@ -49,76 +37,51 @@ def test_that_a_roomy_window_shows_all_numbers(designed: MainWindow) -> None:
 def test_that_the_gallery_keeps_whole_rows_of_cards(designed: MainWindow, width: int, height: int, rows: float) -> None:
     resized(designed, width, height)
     view = designed.gallery.view
-    assert designed.fabrication.warnings.isVisible()  # its two lines are allowed for
     card = view.visualRect(view.model_.index(0, 0))
     assert card.height() >= view.cards.card.height() and view.viewport().height() >= rows * card.height()
 
 
-def test_that_the_usual_window_shows_choices_and_sums_the_numbers_up(designed: MainWindow, qtbot: QtBot) -> None:
-    resized(designed, 1440, 900)
-    panel = designed.fabrication
-    shown = (panel.material, *panel.lengths.values(), designed.target.opened, panel.summary, panel.export)
-    assert all(part.isVisible() for part in shown)
-    assert not panel.numbers["slits"].isVisible() and not panel.options.fold.isVisible()
-    assert panel.numbers["slits"].text() in panel.summary.text()
-    said = []
-    for _ in range(3):
-        said.append(panel.fold.toolTip())
-        qtbot.mouseClick(panel.fold, Qt.MouseButton.LeftButton)
-        if panel.extent is Extent.ALL:
-            assert panel.numbers["slits"].isVisible() and panel.options.fold.isVisible()
-    assert panel.extent is Extent.CHOICES and len(set(said)) == 3
+@pytest.mark.parametrize(("width", "height"), [(1000, 640), (1280, 720), (1440, 900), (1920, 1080)])
+def test_that_the_page_of_making_shows_choices_numbers_stage_and_sheet_at_once(
+    designed: MainWindow, width: int, height: int
+) -> None:
+    designed.pages.turn(Page.MAKE)
+    resized(designed, width, height)
+    panel, stage, cuts = designed.fabrication, designed.stage, designed.cuts
+    shown = (panel.machine, panel.material, panel.construction, *panel.numbers.values(), panel.warnings, panel.export)
+    for part in (*shown, stage.view, stage.deployment.slider, stage.verdict, cuts.view, cuts.bar.slider):
+        assert part.isVisible() and not part.visibleRegion().isEmpty(), part.objectName()
+    assert min(stage.view.width(), cuts.view.width()) >= 240 and min(stage.view.height(), cuts.view.height()) >= 150
+    whole = panel.options.profile.mapTo(panel.scrolled.viewport(), panel.options.profile.rect().topRight())
+    assert whole.x() < panel.scrolled.viewport().width(), "no choice is cut off at its side"
 
 
-def test_that_the_choice_of_how_much_is_shown_lasts(designed: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
-    state = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
-    resized(designed, 1440, 900)
-    designed.remember(state)
-    assert state.value("fabrication") is None
-    qtbot.mouseClick(designed.fabrication.fold, Qt.MouseButton.LeftButton)
-    designed.remember(state)
-    again = create_window(LIGHT)
-    again.restore(state)
-    again.resize(1280, 720)
-    assert again.fabrication.extent is Extent.ALL
-    assert again.close()
-    again.deleteLater()
-
-
-def test_that_the_user_decides_about_folding(designed: MainWindow, qtbot: QtBot) -> None:
+def test_that_what_is_wrong_is_said_beside_the_numbers(designed: MainWindow, until: Until) -> None:
+    designed.pages.turn(Page.MAKE)
     resized(designed, 1000, 640)
-    qtbot.mouseClick(designed.fabrication.fold, Qt.MouseButton.LeftButton)
-    assert designed.fabrication.extent is not Extent.EXPORT
-    resized(designed, 1020, 650)
-    assert designed.fabrication.extent is not Extent.EXPORT and designed.fabrication.material.isVisible()
-
-
-def test_that_a_folded_panel_still_says_what_is_wrong(designed: MainWindow, until: Until) -> None:
-    resized(designed, 1000, 640)
-    assert "cuts" in designed.fabrication.summary.text()
     designed.services.fabrication.change(connector_mm=20.0)
     until(lambda: not designed.fabrication.export.isEnabled())
     assert designed.fabrication.warnings.isVisible() and "connector" in designed.fabrication.warnings.text()
-    assert designed.fabrication.summary.text() == ""
 
 
 def test_that_moved_columns_stay_when_the_window_is_resized(designed: MainWindow) -> None:
     resized(designed, 1300, 800)
-    designed.columns.splitter.splitterMoved.emit(400, 1)
-    designed.columns.splitter.setSizes([420, 500, 360])
-    left = designed.columns.splitter.sizes()[0]
+    designed.pages.splitter.splitterMoved.emit(400, 1)
+    designed.pages.splitter.setSizes([420, 500, 360])
+    left = designed.pages.splitter.sizes()[0]
     resized(designed, 1400, 800)
-    assert abs(designed.columns.splitter.sizes()[0] - left) <= 2
+    assert abs(designed.pages.splitter.sizes()[0] - left) <= 2
 
 
 def test_that_the_title_of_a_narrow_stage_is_never_cut_off(designed: MainWindow, qtbot: QtBot) -> None:
     for width in (1000, 1040, 1280):
         resized(designed, width, 640)
         for _ in range(2):
-            qtbot.mouseClick(designed.stage.cuts_switch, Qt.MouseButton.LeftButton)
+            designed.commands["cuts"].trigger()
             QApplication.processEvents()
-            title = designed.stage.title
-            assert title.width() >= title.sizeHint().width(), (width, designed.stage.showing_cuts)
+            for title in (designed.stage.title, designed.cuts.title):
+                shown = title.isVisible()
+                assert not shown or title.width() >= title.sizeHint().width(), (width, designed.pages.page)
     assert designed.stage.whole.isVisible()
 
 

@@ -24,7 +24,7 @@ def test_that_space_plays_from_a_number(designed: MainWindow, qtbot: QtBot, fiel
 
 def test_that_a_click_on_a_button_does_not_take_space_away(designed: MainWindow, qtbot: QtBot) -> None:
     designed.stage.view.setFocus()
-    qtbot.mouseClick(designed.fabrication.fold, Qt.MouseButton.LeftButton)
+    qtbot.mouseClick(designed.gallery.bar.filter, Qt.MouseButton.LeftButton)
     QTest.keyClick(designed, Qt.Key.Key_Space)
     assert designed.stage.deployment.playing
 

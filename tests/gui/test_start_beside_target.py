@@ -26,6 +26,7 @@ from kirigami_studio.gui.target.sketch_context import Change
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets.readable import TIMES
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
@@ -97,7 +98,7 @@ def test_that_the_tile_names_the_start_and_its_size_and_goes_back_in_one_click(w
     assert tile.size_text == f"60 {TIMES} 30 mm"  # ten cells by twenty
 
 
-def test_that_the_tile_opens_its_list_by_mouse_and_keys_and_makes_room_for_the_board(window: MainWindow) -> None:
+def test_that_the_tile_opens_its_list_by_mouse_and_keys_also_beside_the_board(window: MainWindow) -> None:
     tile = window.target.start
     tile.click()
     assert tile.menu.isVisible()
@@ -106,10 +107,11 @@ def test_that_the_tile_opens_its_list_by_mouse_and_keys_and_makes_room_for_the_b
     QTest.keyClick(tile, Qt.Key.Key_Return)
     assert tile.menu.isVisible() and not tile.entries["circle"].icon().isNull()
     tile.menu.close()
-    window.target.set_editing(True)
-    assert not tile.isVisible()
-    window.target.set_editing(False)
-    assert tile.isVisible()
+    window.pages.turn(Page.SHAPE)
+    assert tile.isVisible() and window.target.view.width() > 4 * tile.width()
+    tile.click()
+    assert tile.menu.isVisible()
+    tile.menu.close()
 
 
 def test_that_a_file_that_falls_on_the_tile_is_the_start_and_a_hollow_one_is_refused(

@@ -134,8 +134,8 @@ class Sitting:
 
     def set_connectors(self) -> None:
         """Show the cuts, click on a connector, type its width, Return; then put another one off with Delete."""
-        page = self.window.stage.cuts
-        self.bot.mouseClick(self.window.stage.cuts_switch, LEFT)
+        page = self.window.cuts
+        self.window.commands["cuts"].trigger()
         plan, transform = page._plan, page.view.transform()
         assert plan is not None and transform is not None
         at = plan.hinges.position

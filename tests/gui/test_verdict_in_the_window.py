@@ -223,14 +223,14 @@ def test_that_pieces_on_pins_are_judged_and_pins_without_room_refused(ready: Mai
     assert keeper.state.verdict is not None and keeper.state.verdict.as_cut is not None
     assert keeper.state.verdict.as_cut.closes and not keeper.state.searching
     ready.commands["cuts"].trigger()
-    assert ready.stage.cuts.beds.isVisible() and not ready.stage.cuts.view.isVisible()
+    assert ready.cuts.beds.isVisible() and not ready.cuts.view.isVisible()
     fabrication.change(pin_mm=9.0, ear_mm=9.0)
     until(lambda: judged(ready) and keeper.state.verdict is not None and keeper.state.verdict.level is Level.FAILS)
     until(lambda: keeper.state.advice is not None)
     assert not keeper.state.searching and keeper.state.advice is not None and keeper.state.advice.fixes == ()
     fabrication.change(construction=None, pin_mm=None, ear_mm=None)
     until(lambda: judged(ready) and keeper.state.verdict is not None and keeper.state.verdict.ok)
-    assert ready.stage.cuts.view.isVisible() and not ready.stage.cuts.beds.isVisible()
+    assert ready.cuts.view.isVisible() and not ready.cuts.beds.isVisible()
 
 
 def test_that_pieces_to_print_are_judged_and_shown_on_their_plate_and_leave_as_3mf(
@@ -243,10 +243,10 @@ def test_that_pieces_to_print_are_judged_and_shown_on_their_plate_and_leave_as_3
     until(lambda: judged(ready) and panel.numbers["pieces"].text().endswith("pins"))
     assert ready.session.document.fabrication.material == "pla-print"
     assert panel.exports.extension == ".3mf" and panel.numbers["time"].text() == panel.numbers["length"].text()
-    (bed,) = ready.stage.cuts.beds._beds
+    (bed,) = ready.cuts.beds._beds
     assert bed.title == "Plate 1" and len(bed.placed) == len({piece.id for piece, _ in bed.placed})
     ready.commands["cuts"].trigger()
-    assert ready.stage.cuts.beds.isVisible() and "plate" in ready.stage.cuts.summary[0]
+    assert ready.cuts.beds.isVisible() and "plate" in ready.cuts.summary[0]
     ready.commands["undo"].trigger()
-    until(lambda: judged(ready) and ready.stage.cuts.view.isVisible())
+    until(lambda: judged(ready) and ready.cuts.view.isVisible())
     assert ready.session.document.fabrication.construction is None

@@ -1,4 +1,4 @@
-"""The page of an empty stage: a sheet that moves, ways to begin, first steps, and one question."""
+"""The first page: a sheet that moves, one question, ways to begin, finished pairs."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import Qt, QTimer
-from PySide6.QtWidgets import QApplication, QLabel, QProxyStyle, QStyle, QWidget
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QListWidgetItem, QProxyStyle, QStyle, QWidget
 from pytestqt.qtbot import QtBot
 
-from kirigami_studio.fabricate.machine import MachineKind, cuttable, find_machine
-from kirigami_studio.gui.make.machine_question import KINDS, CuttingQuestion
+from kirigami_studio.fabricate.machine import cuttable, find_machine, machines
+from kirigami_studio.gui.make.machine_question import CuttingQuestion
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.welcome_page import OFFERS, STEPS, moves
+from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.welcome_page import OFFERS, moves
 from kirigami_studio.project import preferences
 from kirigami_studio.project.preferences import Preferences
 
@@ -33,23 +35,37 @@ def begun(window: MainWindow, until: Until, tmp_path: Path) -> MainWindow:
     """The first start, with the heart and its sample."""
     window.services.preferences.use(tmp_path / "preferences.toml")
     window.services.targeting.start_with("heart")
+    window.pages.turn(Page.SHAPE)
     window.presenters.welcome.begin()
-    until(lambda: window.stage.welcome.ready and window.session.document.target is not None)
+    until(lambda: window.welcome.ready and window.session.document.target is not None)
     return window
 
 
+def item_of(question: CuttingQuestion, key: str) -> QListWidgetItem:
+    """The line of a machine or a material."""
+    lines = (question.list.item(row) for row in range(question.list.count()))
+    return next(line for line in lines if line.data(Qt.ItemDataRole.UserRole) == key)
+
+
+def click_on(question: CuttingQuestion, key: str) -> None:
+    """Click the line of a machine or a material."""
+    box = question.list.visualItemRect(item_of(question, key))
+    if not question.list.viewport().rect().contains(box):
+        question.list.scrollToItem(item_of(question, key))
+        box = question.list.visualItemRect(item_of(question, key))
+    QTest.mouseClick(question.list.viewport(), LEFT, pos=box.center())
+
+
 def answer(question: CuttingQuestion, machine: str, material: str) -> None:
-    """Choose a machine and a material in the menus."""
-    found = find_machine(machine)
-    menu = question.buttons[found.kind].menu()
-    inner = [action.menu() for action in menu.actions() if action.text() == found.name]
-    offered = (inner[0] if inner else menu).actions()
-    next(action for action in offered if action.text() == cuttable(found)[material].name).trigger()
+    """Choose a machine, and a material that it cuts."""
+    click_on(question, machine)
+    assert question.list.count() == len(cuttable(find_machine(machine)))
+    click_on(question, material)
 
 
 def test_that_the_sample_moves_until_the_user_acts(begun: MainWindow, qtbot: QtBot, until: Until) -> None:
-    empty = begun.stage.welcome
-    assert empty.isVisible() and empty.moving and not begun.stage.split.isVisible()
+    empty = begun.welcome
+    assert empty.isVisible() and empty.moving and not begun.stage.isVisible()
     before = empty.view.phi
     until(lambda: empty.view.phi != before)
     qtbot.mouseClick(begun.target, LEFT)
@@ -62,33 +78,20 @@ def test_that_the_sample_moves_until_the_user_acts(begun: MainWindow, qtbot: QtB
 
 def test_that_the_sample_stands_still_where_motion_is_reduced(begun: MainWindow, tmp_path: Path) -> None:
     begun.commands["still"].trigger()
-    assert not begun.stage.welcome.moving and begun.commands["still"].isChecked()
+    assert not begun.welcome.moving and begun.commands["still"].isChecked()
     assert preferences.load(tmp_path / "preferences.toml").motion == "still"
     begun.commands["still"].trigger()
-    assert begun.stage.welcome.moving and not begun.commands["still"].isChecked()
+    assert begun.welcome.moving and not begun.commands["still"].isChecked()
     style = Motionless()
     assert not moves("system", style) and moves("system", begun.style()) and not moves("still", begun.style())
-
-
-def test_that_the_sample_gives_way_to_a_design_and_comes_back_without_one(
-    begun: MainWindow, project_file: Path, until: Until
-) -> None:
-    stage = begun.stage
-    begun.services.project.open(project_file)
-    until(lambda: begun.session.stage is not None)
-    assert stage.split.isVisible() and not stage.welcome.isVisible() and not stage.welcome.moving
-    until(lambda: begun.fabrication.export.isEnabled())
-    begun.services.project.new()
-    until(lambda: begun.session.stage is None)
-    assert stage.welcome.isVisible() and "target" in stage.welcome.hint.text().lower() + stage.welcome.headline.text()
 
 
 @pytest.mark.parametrize("key", ["paper-hand", "card-co2"])
 def test_that_the_question_is_asked_once_and_its_answer_holds_for_new_projects(
     key: str, begun: MainWindow, qtbot: QtBot, tmp_path: Path
 ) -> None:
-    question = begun.stage.welcome.question
-    assert question.isVisible() and list(question.buttons) == [kind for kind, _, _ in KINDS]
+    question = begun.welcome.question
+    assert question.isVisible() and question.list.count() == len(machines().items)
     answer(question, "hand" if key == "paper-hand" else "co2-laser", key)
     assert not question.isVisible()
     kept = preferences.load(tmp_path / "preferences.toml")
@@ -107,7 +110,7 @@ def test_that_the_question_is_asked_once_and_its_answer_holds_for_new_projects(
 
 
 def test_that_declining_is_an_answer_too(begun: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
-    qtbot.mouseClick(begun.stage.welcome.question.later, LEFT)
+    qtbot.mouseClick(begun.welcome.question.later, LEFT)
     assert preferences.load(tmp_path / "preferences.toml") == Preferences(machine_asked=True)
     assert begun.session.document.fabrication.material == Preferences().material
 
@@ -124,81 +127,71 @@ def test_that_an_answer_after_work_has_begun_is_one_step_back(
     assert begun.session.document.fabrication.material == before
 
 
+def test_that_each_material_has_a_picture_of_what_it_becomes_and_its_words(begun: MainWindow) -> None:
+    question = begun.welcome.question
+    click_on(question, "co2-laser")
+    for key, construction in (("card-co2", "One sheet"), ("plywood-co2", "Two layers on pins"), ("felt-co2", "Tiles")):
+        line = item_of(question, key)
+        assert construction in line.text() and not line.icon().isNull() and line.toolTip()
+    question.back.click()
+    assert question.list.count() == len(machines().items) and not question.back.isVisible()
+
+
 @pytest.mark.parametrize(("width", "height"), [(1000, 640), (1280, 720), (1440, 900)])
-def test_that_every_part_of_the_empty_stage_fits(begun: MainWindow, width: int, height: int) -> None:
+def test_that_every_part_of_the_first_page_fits(begun: MainWindow, width: int, height: int) -> None:
     begun.resize(width, height)
     for _ in range(3):
         QApplication.processEvents()
-    empty = begun.stage.welcome
-    parts: list[QWidget] = [*empty.question.buttons.values(), empty.question.later, empty.guide, begun.target.opened]
-    parts += empty.offers.values()
-    for part in parts:
+    page = begun.welcome
+    parts: list[QWidget] = [page.question.list, page.question.later, *page.offers.values(), page.pairs.list]
+    for part in (*parts, begun.target.view, begun.target.start, begun.settings.second, begun.run.generate):
         assert part.isVisible() and part.width() >= part.minimumSizeHint().width(), part.objectName()
-        corner = part.mapTo(begun, part.rect().bottomRight())
-        assert begun.rect().contains(corner)
-    for button in empty.question.buttons.values():
-        assert button.fontMetrics().horizontalAdvance(button.text()) < button.width() - 8
-    for offer in empty.offers.values():
+        assert begun.rect().contains(part.mapTo(begun, part.rect().bottomRight()))
+    for offer in page.offers.values():
         assert offer.fontMetrics().horizontalAdvance(offer.text()) + offer.iconSize().width() < offer.width() - 8
-    assert empty.view.height() >= 140
-    if empty.steps.isVisible():
-        rows = [label for label in empty.steps.findChildren(QLabel) if label.wordWrap()]
-        assert len(rows) == len(STEPS) and all(row.height() >= row.heightForWidth(row.width()) for row in rows)
-    else:
-        assert height < 900, "there is room for the steps"
+    assert page.view.isVisible() is (height >= 900) and (height < 900 or page.view.height() >= 100)
+    begun.presenters.welcome.decline()
+    assert page.view.isVisible(), "without the question there is room"
 
 
 def test_that_the_question_is_answered_by_keys(begun: MainWindow, qtbot: QtBot, until: Until) -> None:
-    button = begun.stage.welcome.question.buttons[MachineKind.HAND]
-    menu = button.menu()
-    button.setFocus(Qt.FocusReason.TabFocusReason)
-    QTimer.singleShot(0, lambda: qtbot.keyClick(menu, Qt.Key.Key_Down))
-    QTimer.singleShot(0, lambda: qtbot.keyClick(menu, Qt.Key.Key_Return))
-    qtbot.keyClick(button, Qt.Key.Key_Space)
+    listed = begun.welcome.question.list
+    listed.setFocus(Qt.FocusReason.TabFocusReason)
+    listed.setCurrentRow(0)
+    qtbot.keyClick(listed, Qt.Key.Key_Return)
+    qtbot.keyClick(listed, Qt.Key.Key_Return)
     until(lambda: begun.session.document.fabrication.machine == "hand")
-    assert not begun.stage.welcome.question.isVisible()
+    assert not begun.welcome.question.isVisible()
 
 
 def test_that_the_page_is_there_before_its_sample(window: MainWindow) -> None:
-    page = window.stage.welcome
-    assert page.isVisible() and not page.ready and not page.view.isVisible() and not window.stage.split.isVisible()
-    assert not window.stage.deployment.isVisible(), "there is nothing to open yet"
-    assert page.isAncestorOf(window.focusWidget() or window) or page.hasFocus()
+    window.pages.turn(Page.SHAPE)
+    page = window.welcome
+    assert page.isVisible() and not page.ready and not page.view.isVisible() and not window.stage.isVisible()
 
 
 def test_that_every_offer_does_what_its_command_does(window: MainWindow, qtbot: QtBot) -> None:
     done = []
-    assert list(window.stage.welcome.offers) == [name for name, _, _ in OFFERS]
-    window.target.set_editing(False)
-    for name, offer in [*window.stage.welcome.offers.items(), ("guide", window.stage.welcome.guide)]:
+    window.pages.turn(Page.SHAPE)
+    assert list(window.welcome.offers) == [name for name, _, _ in OFFERS]
+    for name, offer in window.welcome.offers.items():
         action = window.commands[name]
         action.triggered.disconnect()
         action.triggered.connect(lambda _=False, name=name: done.append(name))
         qtbot.mouseClick(offer, LEFT)
         assert done[-1] == name and offer.toolTip() == action.toolTip()
-    assert len(done) == 7
+    assert len(done) == 4
 
 
 def test_that_the_offers_lead_to_a_design(window: MainWindow, qtbot: QtBot, until: Until) -> None:
-    qtbot.mouseClick(window.stage.welcome.offers["edit_target"], LEFT)
-    assert window.target.editing and not window.stage.isVisible()
-    window.target.set_editing(False)
-    assert window.stage.welcome.isVisible()
-    qtbot.mouseClick(window.stage.welcome.offers["sample"], LEFT)
+    window.pages.turn(Page.SHAPE)
+    qtbot.mouseClick(window.welcome.offers["sample"], LEFT)
     until(lambda: window.session.stage is not None)
-    assert not window.stage.welcome.isVisible() and window.stage.deployment.isVisible()
-
-
-def test_that_a_run_takes_the_place_of_the_page_until_it_is_cancelled(heart: MainWindow, until: Until) -> None:
-    heart.services.generation.generate()
-    assert not heart.stage.welcome.isVisible() and heart.stage.view.isVisible()
-    heart.commands["cancel"].trigger()
-    until(lambda: not heart.services.run.running)
-    assert heart.stage.welcome.isVisible() is (heart.session.stage is None)
+    assert not window.welcome.isVisible() and window.stage.deployment.isVisible()
 
 
 def test_that_the_page_of_a_german_window_fits(german: None, begun: MainWindow) -> None:
     begun.resize(1000, 640)
     QApplication.processEvents()
-    for offer in begun.stage.welcome.offers.values():
+    for offer in begun.welcome.offers.values():
         assert offer.fontMetrics().horizontalAdvance(offer.text()) + offer.iconSize().width() < offer.width() - 8

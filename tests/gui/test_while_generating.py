@@ -33,12 +33,13 @@ def test_that_a_run_shows_its_target_and_no_older_design(designed: MainWindow) -
     assert not stage.deployment.isEnabled() or not stage.deployment.play.isEnabled()
 
 
-def test_that_the_target_of_a_run_is_shown_where_nothing_was_before(heart: MainWindow) -> None:
-    assert heart.stage.view.scene_bounds() is None
+def test_that_the_target_is_shown_before_a_run_during_it_and_when_it_found_nothing(heart: MainWindow) -> None:
+    bounds = heart.stage.view.scene_bounds()
+    assert bounds is not None
     begin_run(heart)
-    assert heart.stage.view.scene_bounds() is not None
+    assert heart.stage.view.scene_bounds() == bounds
     heart.services.run.ended.emit(False)
-    assert heart.stage.view.scene_bounds() is None
+    assert heart.stage.view.scene_bounds() == bounds
 
 
 def test_that_the_angle_stays_from_one_run_to_the_next(designed: MainWindow, designs: Document) -> None:

@@ -22,9 +22,9 @@ import pytest
 from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QApplication, QWidget
 
-from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
@@ -267,10 +267,12 @@ def test_that_a_new_user_has_the_cut_file_of_the_heart_after_three_actions(
     person: Person, window: MainWindow, until: Callable[[Callable[[], bool]], None], tmp_path: Path
 ) -> None:
     window.resize(*SIZE)
+    window.pages.turn(Page.SHAPE)
     window.presenters.welcome.begin()
-    until(lambda: window.stage.welcome.ready)
+    until(lambda: window.welcome.ready)
     QApplication.processEvents()
-    scissors = middle(window.stage.welcome.question.buttons[MachineKind.HAND], window)
+    listed = window.welcome.question.list
+    scissors = listed.viewport().mapTo(window, listed.visualItemRect(listed.item(0)).center())
     generate = middle(window.run.generate, window)
     cut, actions = tmp_path / "heart.pdf", []
     with started(person, tmp_path / "log.txt") as program:
@@ -284,8 +286,8 @@ def test_that_a_new_user_has_the_cut_file_of_the_heart_after_three_actions(
             person.clicks(
                 scissors - QPoint(0, next(above))
             )  # the answer to the one question; actions are counted from here
-            time.sleep(1.0)  # its menu opens
-            person.presses("Down", "Return")  # the first line
+            time.sleep(1.0)  # its materials are listed
+            person.presses("Return")  # the first line
             time.sleep(1.0)
             return kept.exists()
 

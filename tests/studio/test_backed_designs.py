@@ -15,6 +15,7 @@ from shapely.geometry import Polygon
 
 import kirigami_studio as ks
 from kirigami_studio.__main__ import main
+from kirigami_studio.api.design import Design
 from kirigami_studio.assembly.checks import body_of, placed_bodies
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
@@ -22,6 +23,8 @@ from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.fabricate.cut_panels import cut_panels
 from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.hold import HoldKind, HoldWhen
+from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.options import BoardCut
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
@@ -33,6 +36,8 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.as_cut import Source, estimate
+from kirigami_studio.studio.checking import checked_together
+from kirigami_studio.studio.cutting import least_feature_mm
 from kirigami_studio.studio.making import (
     CutRequest,
     Output,
@@ -40,6 +45,7 @@ from kirigami_studio.studio.making import (
     closed,
     exporting,
     judged,
+    picturing,
     planned,
     planning,
     timing,
@@ -216,3 +222,73 @@ def test_that_tiles_without_room_are_refused_and_nothing_is_written(
     assert main(["export", str(project), "--out", str(tmp_path / "none.dxf"), "--gap-mm", "0"]) == 1
     assert "0.2 mm" in capsys.readouterr().err
     assert not (tmp_path / "none").exists()
+
+
+@pytest.mark.parametrize(("kind", "through"), [(HoldKind.MAGNETS, 0), (HoldKind.STITCHES, 4), (HoldKind.TABS, 0)])
+def test_that_tiles_are_held_where_they_meet_and_thread_goes_through_both_layers(
+    square: Document, tmp_path: Path, kind: HoldKind, through: int
+) -> None:
+    settings = replace(square.fabrication, held_by=kind, held_when=HoldWhen.BOTH, magnet_mm=4.0)
+    *_, found = exporting(CutRequest.of(square, settings), Output(tmp_path / "held", "cut"), True, never)
+    record = json.loads((tmp_path / "held" / "pieces.json").read_text())
+    holds = record["holds"]
+    assert {hold["state"] for hold in holds} == {"open", "flat"} and not any(hold["through"] for hold in holds)
+    text = (tmp_path / "held" / "layer-1.svg").read_text()
+    assert ("HOLES_THROUGH" in text) == bool(through)
+    assert not through or f"HOLES_THROUGH {through * len(holds)}" in text
+    assert main(["check", str(tmp_path / "held" / "layer-1.dxf")]) == 0
+    assert found.ok and "hold.only_on_pins" not in {note.code for note in found.planned.plan.notes}
+    if through:  # thread holes of both layers are in one place
+        layers = [read_with_ezdxf(tmp_path / "held" / f"layer-{layer}.dxf").strokes for layer in (1, 2)]
+        rounds = [
+            sorted(
+                tuple(np.round(stroke.points.mean(axis=0), 3))
+                for stroke in strokes
+                if stroke.bulges is not None and np.ptp(stroke.points[:, 0]) < 2.0
+            )
+            for strokes in layers
+        ]
+        assert len(rounds[0]) == len(rounds[1]) == through * len(holds)
+        shift = np.subtract(rounds[0], rounds[1])
+        assert np.ptp(shift, axis=0).max() < 2e-3
+
+
+def test_that_a_check_with_its_design_judges_both_layers_together(
+    square: Document, made: Planned, written: Path
+) -> None:
+    paths = [written / f"layer-{layer}.dxf" for layer in (1, 2)]
+    expected = judged(CutRequest.of(square), made, closed(CutRequest.of(square), made))
+    both = checked_together(paths, square)
+    assert [one.verdict.level for one in both if one.verdict] == [expected.level] * 2
+    assert all(one.sound and one.verification is not None and one.verification.ok for one in both)
+    assert "check.beds_missing" not in {note.code for one in both if one.verdict for note in one.verdict.notes}
+    alone = checked_together(paths[:1], square)[0]
+    assert alone.verdict is not None and "check.beds_missing" in {note.code for note in alone.verdict.notes}
+    other = replace(square, candidates=(replace(square.candidates[0], sheet=Sheet(RatioField(np.full((3, 3), 1.2)))),))
+    assert {one.code for one in checked_together(paths, other)[0].verdict.problems} >= {"check.other_design"}
+    wider = replace(square, fabrication=replace(square.fabrication, gap_mm=2.0))
+    assert not checked_together(paths, wider)[1].verification.ok
+
+
+def test_that_small_pictures_show_tiles_on_cloth(square: Document, made: Planned) -> None:
+    ((_, pieces),) = picturing((CutRequest.of(square),), never)
+    assert pieces is not None and len(pieces.layers) == 2 and made.layers is not None
+    cloth, tiles = pieces.layers
+    assert len(cloth) == 16 and len(tiles) == len(made.layers.assembly.pieces)
+    assert pieces.look.layer(0, 2) != pieces.look.layer(1, 2)
+    rings = pieces.outlines(0.0)
+    under = shapely.union_all([Polygon(rings[number]).buffer(1e-6) for number in cloth])
+    assert all(under.covers(Polygon(rings[number])) for number in tiles)
+    design = Design(square)
+    assert design._repr_svg_().count("<path") > 3 and "#e2dbcc" in design._repr_svg_()
+
+
+def test_that_an_edge_of_a_panel_has_room_for_the_least_tile_between_two_connectors() -> None:
+    """Fits go to the bound; at the size of a tile and its gaps alone three to five tiles of a house were missing."""
+    settings = new_settings({"material": "felt-co2"})
+    felt, cotton = find_material("felt-co2"), find_material("cotton-co2")
+    bends_mm = cotton.kerf_mm + 1.275 * cotton.connector_mm
+    assert least_feature_mm(settings) == pytest.approx(felt.min_panel_mm + 2.0 * bends_mm + cotton.kerf_mm)
+    # Tiles that are a wide gap smaller have some room besides: at the bound itself they are left out.
+    least_mm = 1.1 * felt.min_panel_mm + 2.0 * (5.0 + 0.5 * cotton.kerf_mm) + cotton.kerf_mm
+    assert least_feature_mm(replace(settings, gap_mm=5.0)) == pytest.approx(least_mm)

@@ -16,6 +16,7 @@ import kirigami_studio as ks
 from kirigami_studio.__main__ import main
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.fabricate.hold import HeldState, HoldKind, HoldWhen
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import ExportError, FabricationError
 from kirigami_studio.foundation.steps import never
@@ -194,3 +195,20 @@ def test_that_a_soft_sheet_is_printed_as_one_body(pinwheel: Document, tmp_path: 
         too_wide = replace(request.settings, width_mm=240.0)
         list(exporting(CutRequest.of(pinwheel, too_wide), Output(tmp_path / "wide.stl"), True, never))
     assert refused.value.code == "printed.larger_than_bed"
+
+
+@pytest.mark.parametrize("kind", [HoldKind.MAGNETS, HoldKind.STITCHES])
+def test_that_what_holds_a_print_is_left_out_of_its_bodies(
+    pinwheel: Document, made: MadePieces, kind: HoldKind
+) -> None:
+    settings = replace(pinwheel.fabrication, held_by=kind, held_when=HoldWhen.BOTH, magnet_mm=4.0)
+    with_holes = pieces_of(CutRequest.of(pinwheel, settings))
+    job, plain = with_holes.printing, made.printing
+    assert job is not None and plain is not None
+    assert {place.state for place in job.holds} == set(HeldState)
+    holes = sum(len(at) for place in job.holds for at in place.at)
+    deep = settings.magnet_height_mm if kind is HoldKind.MAGNETS else job.thickness_mm
+    taken = 0.25 * np.pi * job.hold.hole_mm**2 * deep * holes
+    assert plain.volume_mm3 - job.volume_mm3 == pytest.approx(taken, rel=0.02)
+    assert set(with_holes.posed.holds) == set(job.holds)
+    assert any(f"{'magnets' if kind is HoldKind.MAGNETS else 'stitches'}" in line for line in job.lines)

@@ -115,6 +115,18 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "trim.crosses_itself": mark(
         "This design crosses itself at the target angle, so it cannot be trimmed. Choose another design."
     ),
+    "trim.hole_too_small": mark_n(
+        "{count} of {total} holes stays closed, for it is smaller than the panels at x = {x:.1f}, y = {y:.1f} mm. "
+        "Choose more rows and columns, or fill it.",
+        "{count} of {total} holes stay closed, for they are smaller than the panels there, as at x = {x:.1f}, "
+        "y = {y:.1f} mm. Choose more rows and columns, or fill them.",
+    ),
+    "trim.hole_holds_sheet": mark_n(
+        "{count} of {total} holes stays closed, for the sheet would fall apart there, near x = {x:.1f}, "
+        "y = {y:.1f} mm. Choose more rows and columns, make it smaller, or fill it.",
+        "{count} of {total} holes stay closed, for the sheet would fall apart there, as near x = {x:.1f}, "
+        "y = {y:.1f} mm. Choose more rows and columns, make them smaller, or fill them.",
+    ),
     "trim.nothing_left": mark("No part of the sheet lies mostly on the target. Lay the sheet over the target first."),
     "trim.keep_out_of_range": mark(
         "The material kept at hinges must be {least:g} to {most:g} cells deep, got {keep!r:.80}."
@@ -151,6 +163,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "grid.finer_tried": mark(
         "{rows} x {columns}: in short fits on {count} grids, coarser ones matched noticeably less. "
         "Expected match: {percent:.1f} %."
+    ),
+    "grid.finer_for_holes": mark(
+        "{rows} x {columns}: finer than the outline needs, so that holes and the walls beside them are no smaller than "
+        "panels allow. Expected match: {percent:.1f} %."
     ),
     "grid.panels_would_be_too_small": mark(
         "{rows} x {columns}: on a finer grid, panels of a sheet {width_mm:.0f} mm wide would be smaller than "
@@ -259,6 +275,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "with {count} panel.",
         "Match {match:.1f} %, gives up {percent:.0f} % of the sheet: it covers the notches, and they are cut out of it "
         "with {count} panels.",
+    ),
+    "rank.holes_cut_out": mark_n(
+        "Match once trimmed: {match:.1f} %. The sheet covers its holes; they are cut out of it with {count} panel.",
+        "Match once trimmed: {match:.1f} %. The sheet covers its holes; they are cut out of it with {count} panels.",
     ),
     "rank.pins_too_near": mark("Pins come as near as {gap_mm:.1f} mm; their ears need {least_mm:.1f} mm."),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),

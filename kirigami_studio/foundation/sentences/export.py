@@ -34,6 +34,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "profile.name_left_out": mark(
         "The name {name!r} is not in this file: with this machine profile, everything in a file is cut."
     ),
+    "profile.marks_left_out": mark(
+        "The marks of places that hold the sheet are not in this file: with this machine profile, everything in a file "
+        "is cut."
+    ),
     "profile.kerf_is_theirs": mark(
         "Contours are the edges of the finished part: the cutting service has to allow for its kerf."
     ),
@@ -347,6 +351,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "cut_file.copies_differ": mark(
         "The file promises {promised:.20} copies of a sheet; those in it are not alike or not apart. Export it again."
+    ),
+    "cut_file.holes_differ": mark_n(
+        "{count} hole of the silhouette is cut, where the file promises {promised}. Export it again.",
+        "{count} holes of the silhouette are cut, where the file promises {promised}. Export it again.",
     ),
     "cut_file.joins_differ": mark_n(
         "{count} cut ends on another cut, where the file promises {promised:.20}: a connector is lost or a slit "

@@ -511,8 +511,21 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{count} pin is left out, which would have no wall; the pieces move in one way all the same.",
         "{count} pins are left out, which would have no wall; the pieces move in one way all the same.",
     ),
-    "hold.only_on_pins": mark(
-        "Magnets, eyelets, stitches and tabs are placed in two layers on pins only: this sheet has none."
+    "hold.marks_for_magnets": mark(
+        "Engraved marks with numbers, two of each, meet as the sheet moves: {open} keep it open, {flat} flat. Glue a "
+        "magnet on each, with opposite poles up at the two of a number."
+    ),
+    "hold.marks_for_eyelets": mark(
+        "Engraved marks with numbers, two of each, meet as the sheet moves: {open} keep it open, {flat} flat. Punch "
+        "each, set an eyelet, and tie the two of a number."
+    ),
+    "hold.marks_for_stitches": mark(
+        "Engraved crosses with numbers, two of each, meet as the sheet moves: {open} keep it open, {flat} flat. Pierce "
+        "them, and sew the two of a number together."
+    ),
+    "hold.marks_for_tabs": mark(
+        "Engraved marks with numbers, two of each, meet as the sheet moves: {open} keep it open, {flat} flat. Stick "
+        "tape over the two of a number."
     ),
     "drive.only_on_pins": mark("A board with arms moves two layers on pins only: this sheet has none."),
     "drive.needs_screws": mark(
@@ -535,6 +548,10 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "hold.nothing_meets_flat": mark("Nothing keeps the sheet flat: no edges meet there that are long enough."),
     "pinned.not_made": mark("The pieces of this design could not be made ({reason:.200}). Choose another design."),
+    "pinned.target_has_holes": mark_n(
+        "Pieces on pins show no holes so far, and the target has {count}. Fill it, or make it one sheet or backed.",
+        "Pieces on pins show no holes so far, and the target has {count}. Fill them, or make it one sheet or backed.",
+    ),
     "pinned.falls_apart": mark_n(
         "Piece {piece} falls apart: the ears of its neighbours cut it through. Make the ears smaller or the sheet "
         "larger.",

@@ -118,6 +118,7 @@ class OpenProject(QObject):
 
     saved = Signal(Path)
     opened = Signal(Path)
+    begun = Signal()  #: an empty one
 
     def __init__(
         self,
@@ -150,6 +151,7 @@ class OpenProject(QObject):
         """Forget everything and start empty."""
         self._stop_work()
         self._session.restart(self._preferences.new_document(), None)
+        self.begun.emit()
         self._session.set_status(tr("New project. Choose or draw a target."))
 
     def open(self, path: Path) -> None:

@@ -83,8 +83,11 @@ class CutDrawing:
 
     @cached_property
     def sheet(self) -> QPainterPath:
-        """The finished sheet's area: inside of the outline, which tabs may have parted."""
-        return line_path(_ring([path.flattened for path in self.plan.on_layer(Layer.OUTLINE)]), closed=True)
+        """The finished sheet: the inside of its outline, tabs or not, less the holes."""
+        sheet = line_path(_ring([path.flattened for path in self.plan.on_layer(Layer.OUTLINE)]), closed=True)
+        for hole in self.plan.on_layer(Layer.HOLES):
+            sheet.addPath(line_path(hole.flattened, closed=True))
+        return sheet
 
     @cached_property
     def travel(self) -> FloatArray:
@@ -110,6 +113,7 @@ def layer_colour(layer: Layer, palette: Palette) -> str:
     return {
         Layer.SLITS: palette.slits,
         Layer.EDGE_SLITS: palette.edge_slits,
+        Layer.HOLES: palette.text,
         Layer.OUTLINE: palette.text,
         Layer.RELIEF: palette.relief,
     }[layer]

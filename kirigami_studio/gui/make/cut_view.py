@@ -34,6 +34,7 @@ from kirigami_studio.gui.widgets.legends import (
     paint_scale_bar,
 )
 from kirigami_studio.gui.widgets.paths import blank, painter_on
+from kirigami_studio.gui.widgets.readable import readable_size
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
 #: Layer names for the legend.
@@ -41,6 +42,7 @@ LAYER_NAMES = {
     Layer.RELIEF: mark("relief ends"),
     Layer.SLITS: mark("slits"),
     Layer.EDGE_SLITS: mark("edge slits"),
+    Layer.HOLES: mark("holes"),
     Layer.OUTLINE: mark("outline"),
 }
 #: Narrower than this (pixels) the legend leaves the outline out.
@@ -62,6 +64,7 @@ class CutOverlay(Enum):
     TRAVEL = "travel"
     CONNECTORS = "connectors"
     PROBLEMS = "problems"
+    BED = "bed"
 
 
 class CutView(Canvas):
@@ -79,6 +82,7 @@ class CutView(Canvas):
         self._problems: tuple[Problem, ...] = ()
         self._problem = -1
         self._step = 0
+        self._bed = (0.0, 0.0)
         self.overlays: frozenset[CutOverlay] = frozenset({CutOverlay.CONNECTORS, CutOverlay.PROBLEMS})
         self._caption = ""
         self._markers: tuple[tuple[object, ...], QPixmap] | None = None
@@ -121,10 +125,23 @@ class CutView(Canvas):
 
     def set_overlays(self, overlays: frozenset[CutOverlay]) -> None:
         """Choose what is drawn over the cuts."""
+        turned = (CutOverlay.BED in overlays) is not (CutOverlay.BED in self.overlays)
         self.overlays = overlays
+        if turned:
+            self.fit()
         if CutOverlay.CONNECTORS not in overlays:
             self.gestures.select(frozenset())
         self.update()
+
+    def show_bed(self, reach_mm: tuple[float, float]) -> None:
+        """Set the bed that the sheet lies on (width, height; mm); zeros where there is none."""
+        self._bed = reach_mm
+        self.update()
+
+    @property
+    def on_bed(self) -> bool:
+        """Whether the bed is shown."""
+        return CutOverlay.BED in self.overlays and min(self._bed) > 0.0
 
     def set_caption(self, text: str) -> None:
         """Say in the upper left corner why the picture is not the newest."""
@@ -145,11 +162,19 @@ class CutView(Canvas):
         return "trim", tr("No cuts yet"), tr("The cut plan of the chosen design appears here.")
 
     def scene_bounds(self) -> Bounds | None:
-        return None if self._drawing is None else self._drawing.bounds
+        if self._drawing is None or not self.on_bed:
+            return None if self._drawing is None else self._drawing.bounds
+        sheet = self._drawing.bounds
+        return Bounds.of(np.array([[sheet.left, sheet.bottom], [sheet.right, sheet.top], [0.0, 0.0], self._bed]))
 
     def paint_scene(self, painter: QPainter, transform: ViewTransform) -> None:
         if self._drawing is None or self._connectors is None:
             return
+        if self.on_bed:
+            (left, bottom), (right, top) = transform.to_pixels(np.array([[0.0, 0.0], self._bed])).tolist()
+            painter.setPen(QPen(QColor(self.palette_.muted), 1.0, Qt.PenStyle.DashLine))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(QRectF(left, top, right - left, bottom - top))
         paint_cut_sheet(painter, self._drawing, transform, self.palette_)
         paint_cuts(painter, self._drawing, transform, self.palette_, self._step, QRectF(self.rect()))
         paint_name(painter, self._drawing, transform, self.palette_)
@@ -222,6 +247,8 @@ class CutView(Canvas):
         if self.width() < ROOM_FOR_OUTLINE:  # which everyone knows without a label
             layers = tuple(layer for layer in layers if layer is not Layer.OUTLINE)
         chips = [Chip((layer_colour(layer, self.palette_),), tr(LAYER_NAMES[layer])) for layer in layers]
+        if self.on_bed:
+            chips.append(Chip((self.palette_.muted,), tr("bed {size}", size=readable_size(*self._bed))))
         if self.shows_name:
             chips.append(Chip((self.palette_.engraved,), tr("engraved name")))
         if CutOverlay.CONNECTORS in self.overlays and len(self._connectors):

@@ -1,17 +1,17 @@
-"""The second page of the stage: the cut plan with its problems and connectors, and the job played cut by cut."""
+"""The sheet as it is cut: the plan with its problems and connectors, and the job played cut by cut."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QElapsedTimer, QSignalBlocker, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QListWidget,
     QListWidgetItem,
     QSlider,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -24,7 +24,7 @@ from kirigami_studio.gui.make.cut_view import CutOverlay, CutView
 from kirigami_studio.gui.make.fabrication_panel import sheets_of
 from kirigami_studio.gui.make.hinge_bar import HingeBar
 from kirigami_studio.gui.widgets import icons
-from kirigami_studio.gui.widgets.card import ToolButton
+from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, ToolButton
 from kirigami_studio.gui.widgets.readable import readable_length, readable_size, readable_time
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.studio.making import laid_beds
@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 #: Seconds in which a whole job is played, however long it takes to cut.
 PLAY_SECONDS = 12.0
 FRAME_MS = 16
+#: Pixels between the title and the numbers at least.
+GAP = 12
 #: Lines that are shown without scrolling.
 MOST_LINES = 3
 ICONS = {Severity.ERROR: "fault", Severity.WARNING: "warning"}
@@ -47,10 +49,11 @@ OVERLAYS = (
         mark("Show connectors. Dark is narrow, light is wide (reversed in the dark theme)."),
     ),
     (CutOverlay.PROBLEMS, "fault", mark("Mark problems found by the cut check.")),
+    (CutOverlay.BED, "rectangle", mark("Show the sheet on the machine's bed.")),
 )
 
 
-class CutsPage(QWidget):
+class CutsPage(Card):
     """Shows one plan and reports what to do with its connectors."""
 
     width_wanted = Signal(frozenset, float)  #: numbers of connectors; mm
@@ -59,27 +62,28 @@ class CutsPage(QWidget):
     edited = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+        super().__init__(tr("Sheet"), parent)
         self._plan: CutPlan | None = None
         self._pieces: MadePieces | None = None
         self.view, self.beds = CutView(), BedsView()
         self.problems = ProblemList()
         self.hinges = HingeBar()
         self.bar = CutBar()
+        self.numbers = FittingLabel()
+        self.header.addWidget(self.numbers)
+        self.header.addSpacing(8)
         self.toggles: dict[CutOverlay, ToolButton] = {}
         for overlay, icon, tip in OVERLAYS:
             button = ToolButton(f"cut{overlay.value.capitalize()}", icon, tr(tip), checkable=True)
             button.setChecked(overlay in self.view.overlays)
             button.toggled.connect(self._update_overlays)
             self.toggles[overlay] = button
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
-        column.addWidget(self.view, 1)
-        column.addWidget(self.beds, 1)
+            self.header.addWidget(button)
+        self.body.addWidget(self.view, 1)
+        self.body.addWidget(self.beds, 1)
         self.beds.hide()
         for part in (self.problems, self.hinges, self.bar):
-            column.addWidget(part)
+            self.body.addWidget(part)
         self._connect()
 
     def _connect(self) -> None:
@@ -128,10 +132,22 @@ class CutsPage(QWidget):
             self._show_beds((), (0.0, 0.0), PieceLook())
         else:
             self._show_beds(made.beds, made.job.machine.reach_mm, made.posed.look)
-        for part in (self.view, self.hinges, self.bar):
+        for part in (self.view, self.hinges, self.bar, *self.toggles.values()):
             part.setVisible(made is None)
         if made is not None:
             self.problems.show_problems(made.report.problems)
+        self._show_numbers()
+
+    def _show_numbers(self) -> None:
+        """Say in the header how large the sheet is, as far as there is room."""
+        self.numbers.set_texts(*self.summary)
+        shown = [button for button in self.toggles.values() if not button.isHidden()]
+        used = sum(button.sizeHint().width() + self.header.spacing() for button in shown) + 8
+        self.numbers.fit(self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        self._show_numbers()
+        super().resizeEvent(event)
 
     def _show_beds(self, beds: tuple[LaidBed, ...], room: tuple[float, float], look: PieceLook) -> None:
         self.beds.show_beds(beds, room, look)
@@ -151,6 +167,7 @@ class CutsPage(QWidget):
         problems = () if planned is None else planned.report.problems
         new_sheet = self._plan is None or plan is None or self._plan.copies.spread_mm != plan.copies.spread_mm
         self._plan = plan
+        self._show_numbers()
         self.view.set_caption("")
         self.view.show_plan(plan, problems)
         self.problems.show_problems(problems)

@@ -283,7 +283,7 @@ def message_of(path: Path, made: Planned, verdict: Verdict | None) -> Message:
     plan, check = made.plan, made.report
     if verdict is not None and verdict.problems:
         sentence = tr(
-            "{name} exported. {level}: {text}", name=path.name, level=verdict.level.words, text=verdict.problems[0].text
+            "{name} exported. {level}: {text}", name=path.name, level=verdict.level_words, text=verdict.problems[0].text
         )
         return Message(sentence, Tone.WARNING, "\n".join([str(path), *verdict.lines]))
     details = "\n".join([str(path), *(note.text for note in (*check.problems, *plan.notes))])
@@ -313,7 +313,7 @@ def message_of_pieces(path: Path, pieces: MadePieces, verdict: Verdict | None) -
     """Say which files of pieces were written, and whether they would work."""
     details = "\n".join([str(path), *(() if verdict is None else verdict.lines)])
     if verdict is not None and verdict.problems:
-        level, text = verdict.level.words, verdict.problems[0].text
+        level, text = verdict.level_words, verdict.problems[0].text
         sentence = tr("{name} exported. {level}: {text}", name=path.name, level=level, text=text)
         return Message(sentence, Tone.WARNING, details)
     assembly = pieces.made.assembly

@@ -39,6 +39,7 @@ class ExportReport(QDialog):
     """Shows the verdict by symbol, word and colour, then every finding."""
 
     folder_wanted = Signal(Path)  #: of what was written
+    open_wanted = Signal(Path)  #: in the program that the desktop has for it
 
     def __init__(
         self,
@@ -74,11 +75,13 @@ class ExportReport(QDialog):
         self.findings.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.facts = {name: QLabel() for name in format_facts(verifications[0])}
         self.folder = QPushButton(tr("Show in &folder"))
+        self.open = QPushButton(tr("O&pen file"))
         self.copy = QPushButton(tr("&Copy"))
         self.shut = QPushButton(tr("Cl&ose"))
         self.shut.setDefault(True)
         self._lay_out()
         self.folder.clicked.connect(lambda: self.folder_wanted.emit(self.shown.path))
+        self.open.clicked.connect(lambda: self.open_wanted.emit(self.shown.path))
         self.copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(self.text()))
         self.shut.clicked.connect(self.close)
         self.file.currentIndexChanged.connect(self._show)
@@ -129,6 +132,7 @@ class ExportReport(QDialog):
             table.addWidget(label, 1, column)
             table.setColumnStretch(column, 3 if column == 0 else 2)
         buttons = QHBoxLayout()
+        buttons.addWidget(self.open)
         buttons.addWidget(self.folder)
         buttons.addWidget(self.copy)
         buttons.addStretch(1)
@@ -192,7 +196,7 @@ def headline(verification: Verification, judged: Verdict | None) -> str:
     """What is to be expected of the sheet where it is not ready to cut, else of the file."""
     if judged is None or judged.ok or not verification.ok:
         return verdict(verification)
-    return tr("{level}: {text}", level=judged.level.words, text=judged.problems[0].text)
+    return tr("{level}: {text}", level=judged.level_words, text=judged.problems[0].text)
 
 
 def symbol_of(verification: Verification, judged: Verdict | None) -> str:

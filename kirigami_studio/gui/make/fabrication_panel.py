@@ -1,23 +1,12 @@
-"""From design to cut file: material, widths in mm, live numbers, export.
-
-The row with the material is made here; the window puts it above the settings that designs are asked for with.
-"""
+"""From design to cut file: machine, material, construction, widths in mm, options, live numbers, export."""
 
 from __future__ import annotations
 
 from contextlib import suppress
-from enum import Enum
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QSettings, Qt, Signal
-from PySide6.QtWidgets import (
-    QGridLayout,
-    QHBoxLayout,
-    QLabel,
-    QSizePolicy,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QWidget
 
 from kirigami_studio.fabricate.machine import USUAL, MachineKind
 from kirigami_studio.fabricate.material import PRINTER
@@ -34,6 +23,7 @@ from kirigami_studio.gui.widgets.card import (
     muted_label,
 )
 from kirigami_studio.gui.widgets.form import Form
+from kirigami_studio.gui.widgets.layouts import column, label, plain_pane, row
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.widgets.readable import (
     TIMES,
@@ -56,8 +46,8 @@ if TYPE_CHECKING:
 LENGTHS = ("width_mm", "connector_mm", "kerf_mm")
 #: Lengths of slots and of open cuts differ by much more than this share.
 SAME_LENGTH = 1e-3
-#: Height (pixels) that unfolded numbers keep in a small window, where they scroll.
-LEAST_DETAILS = 150
+#: Height (pixels) that choices keep in a small window, where they scroll.
+LEAST_CHOICES = 150
 #: Key and label of the live numbers, in reading order.
 NUMBERS = (
     ("size", mark("Sheet")),
@@ -67,22 +57,6 @@ NUMBERS = (
     ("pieces", mark("Pieces")),
     ("ligament", mark("Min. ligament")),
 )
-
-
-class Extent(Enum):
-    """How much the panel shows; each is more than the one before."""
-
-    EXPORT = "export"  #: the sheet's size in the header, what is wrong, and the export
-    CHOICES = "choices"  #: the widths too
-    ALL = "all"  #: the live numbers and the options too
-
-
-#: What the button does next, in the words of its tooltip.
-NEXT = {
-    Extent.EXPORT: (Extent.CHOICES, mark("Show widths.")),
-    Extent.CHOICES: (Extent.ALL, mark("Show cutting numbers and more options.")),
-    Extent.ALL: (Extent.EXPORT, mark("Hide widths and numbers.")),
-}
 
 
 class FabricationPanel(Card):
@@ -97,9 +71,6 @@ class FabricationPanel(Card):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(tr("Fabrication"), parent)
-        self._calm = True
-        self._extent, self._by_hand = Extent.ALL, False
-        self._summaries = ("", "")  # with the live numbers in sight, and without
         self.chooser = MachineChooser(self)
         self.chooser.changed.connect(self.changed)
         self.chooser.edited.connect(self.edited)
@@ -115,7 +86,6 @@ class FabricationPanel(Card):
         self.form.changed.connect(self.changed)
         self.form.edited.connect(self.edited)
         self.construction = self.form.choice("construction")
-        self.material_row = self._material_row()
         self.lengths = {name: self.form.decimal(name) for name in LENGTHS}
         self.numbers = {key: QLabel(UNKNOWN) for key, _ in NUMBERS}
         self.warnings = muted_label()
@@ -129,64 +99,17 @@ class FabricationPanel(Card):
         self.exports = ExportRow()
         self.exports.export_wanted.connect(self.export_wanted)
         self.export, self.more, self.kinds = self.exports.export, self.exports.more, self.exports.kinds
-        self._build_fold()
+        self.summary = label()  #: what was trimmed off
+        self.header.addWidget(self.summary)
         self._lay_out()
         self.body.addWidget(self.warnings)
         self.body.addWidget(self.exports)
         self.show_plan(None)
 
-    def _build_fold(self) -> None:
-        """The button that folds parts away, and the summary that stands for the numbers."""
-        self.details = QWidget()
-        self.details.setObjectName("plain")
-        self.summary = QLabel()
-        self.summary.setObjectName("muted")
-        self.fold = ToolButton("foldFabrication", "down", tr("Show more or fewer fabrication settings."))
-        self.header.addWidget(self.summary)
-        self.header.addWidget(self.fold)
-        self.fold.clicked.connect(self._change_by_hand)
-        self.summary.hide()
-
-    def _change_by_hand(self) -> None:
-        self._by_hand = True
-        self._show_extent(NEXT[self._extent][0])
-
-    def fit(self, extent: Extent) -> None:
-        """Show as much as there is room for, unless the user has decided."""
-        if not self._by_hand:
-            self._show_extent(extent)
-
-    @property
-    def extent(self) -> Extent:
-        """How much is shown."""
-        return self._extent
-
-    def _show_extent(self, extent: Extent) -> None:
-        self._extent = extent
-        self.fold.setToolTip(tr(NEXT[extent][1]))
-        self.scrolled.setVisible(extent is not Extent.EXPORT)
-        self.table.setVisible(extent is Extent.ALL)
-        self.options.setVisible(extent is Extent.ALL or self.options.fold.isChecked())  # what was opened stays
-        self._show_summary()
-        self._show_warning()
-        self.fold.show_icon("down" if extent is Extent.ALL else "up")
-
-    def restore(self, settings: QSettings) -> None:
-        """Show as much as the user chose the last time."""
-        if (saved := settings.value("fabrication")) in [extent.value for extent in Extent]:
-            self._by_hand = True
-            self._show_extent(Extent(saved))
-
-    def remember(self, settings: QSettings) -> None:
-        """Keep how much the user chose to see for the next time."""
-        if self._by_hand:
-            settings.setValue("fabrication", self._extent.value)
-
     def _material_row(self) -> QWidget:
-        """Place the fields of machine and material where designs are asked for."""
-        row = QWidget()
-        row.setObjectName("plain")
-        table = QGridLayout(row)
+        """The fields of machine, material and construction."""
+        pane = plain_pane()
+        table = QGridLayout(pane)
         table.setContentsMargins(0, 0, 0, 0)
         table.setHorizontalSpacing(4)
         table.setVerticalSpacing(4)
@@ -198,14 +121,11 @@ class FabricationPanel(Card):
                 (tr("Construction"), self.construction, None),
             )
         ):
-            caption = QLabel(text)
-            caption.setObjectName("muted")
-            caption.setBuddy(box)
-            table.addWidget(caption, line, 0)
+            table.addWidget(label(text, box), line, 0)
             table.addWidget(box, line, 1, 1, 1 if button is not None else 2)
             if button is not None:
                 table.addWidget(button, line, 2)
-        return row
+        return pane
 
     def _edit_machines(self) -> None:
         """Open the machine editor, or bring it to the front."""
@@ -225,37 +145,28 @@ class FabricationPanel(Card):
         self.machines_changed.emit()
 
     def _lay_out(self) -> None:
-        rows = QVBoxLayout(self.details)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(5)
-        row = QHBoxLayout()
-        row.setSpacing(8)
-        for name in LENGTHS:
-            row.addLayout(self.form.captioned(name), 1)
-        rows.addLayout(row)
-        self.table = QWidget()
-        self.table.setObjectName("plain")
-        table = QGridLayout(self.table)
-        table.setContentsMargins(0, 1, 0, 0)
+        choices = plain_pane()
+        lengths = row(*((self.form.captioned(name), 1) for name in LENGTHS), spacing=8)
+        column(self._material_row(), lengths, self.options, ..., on=choices, spacing=8, margins=(0, 0, 6, 0))
+        self.scrolled = ScrolledWhenShort(choices, LEAST_CHOICES)
+        self.body.addWidget(self.scrolled)
+        self.body.addStretch(1)
+        table = QGridLayout()
         table.setHorizontalSpacing(8)
         table.setVerticalSpacing(1)
-        for place, (key, label) in enumerate(NUMBERS):
-            line, column = divmod(place, 3)
-            caption = QLabel(tr(label))
-            caption.setObjectName("muted")
+        for place, (key, words) in enumerate(NUMBERS):
+            line, across = divmod(place, 3)
+            caption = label(tr(words))
             self.numbers[key].setObjectName("number")
-            self.numbers[key].setAccessibleName(tr(label))
-            table.addWidget(caption, 3 * line, column)
-            table.addWidget(self.numbers[key], 3 * line + 1, column)
+            self.numbers[key].setAccessibleName(tr(words))
+            table.addWidget(caption, 3 * line, across)
+            table.addWidget(self.numbers[key], 3 * line + 1, across)
             for part in (caption, self.numbers[key]):
                 part.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         table.setRowMinimumHeight(2, 3)
-        for column, stretch in enumerate((12, 9, 11)):
-            table.setColumnStretch(column, stretch)
-        rows.addWidget(self.table)
-        rows.addWidget(self.options)
-        self.scrolled = ScrolledWhenShort(self.details, LEAST_DETAILS)
-        self.body.addWidget(self.scrolled)
+        for across, stretch in enumerate((12, 9, 11)):
+            table.setColumnStretch(across, stretch)
+        self.body.addLayout(table)
 
     def reload_materials(self) -> None:
         """Read the library again."""
@@ -287,7 +198,7 @@ class FabricationPanel(Card):
         self.exports.allow(cuts=planned is not None, pictures=planned is not None)
         if planned is None:
             self._forget_numbers()
-            self._warn(tr("Choose a design to see its cut plan."), calm=True)
+            self._warn(tr("Choose a design to see its cut plan."))
             return
         plan, report = planned.plan, planned.report
         copies = len(plan.copies)
@@ -312,8 +223,7 @@ class FabricationPanel(Card):
         self.options.rows.setToolTip(format_copies(plan))
         self.numbers["time"].setToolTip(format_times(times))
         self.numbers["length"].setToolTip(format_slots(planned))
-        size = texts["size"] if copies == 1 else sheets_of(plan)
-        self._sum_up(size, copies * len(plan.paths), planned.removed_share)
+        self._show_trim(planned.removed_share)
 
     def show_pieces(self, made: MadePieces) -> None:
         """Show the amount of pieces, pins and cuts of a pinned design."""
@@ -336,10 +246,7 @@ class FabricationPanel(Card):
             self.numbers[key].setText(text)
             self.numbers[key].setToolTip("")
         self.options.rows.setText("")
-        summary = tr("{size}  ·  {pieces} pieces, {pins} pins", size=texts["size"], pieces=pieces, pins=pins)
-        self._summaries = ("", summary)
-        self.summary.setToolTip("")
-        self._show_summary()
+        self._show_trim(0.0)
 
     def show_verdict(self, state: VerdictState) -> None:
         """Show what is to be expected of the sheet, and why: the same list as in the banner."""
@@ -351,68 +258,45 @@ class FabricationPanel(Card):
             first = tr("{level}: {reason}", level=level, reason=reasons[0])
         else:
             first = "\n".join([level, *reasons[:1]])
-        self._warn("\n".join([first, *reasons[1:]]), calm=not reasons, muted=not weighty)
+        self._warn("\n".join([first, *reasons[1:]]), muted=not weighty)
 
-    def _sum_up(self, size: str, cuts: int, removed_share: float) -> None:
-        """The header's words, with and without the live numbers; that a sheet is trimmed is said in both."""
+    def _show_trim(self, removed_share: float) -> None:
+        """Say in the header that a sheet is trimmed."""
         percent = 100 * removed_share
-        if removed_share:
-            beside_numbers = tr("trimmed, {percent:.1f} % cut off", percent=percent)
-            self._summaries = (beside_numbers, tr("{size}  ·  trimmed", size=size))
-            tip = tr(
-                "Trimmed: {percent:.1f} % of the sheet is cut off along the target, also in the cut file.",
-                percent=percent,
-            )
-        else:
-            self._summaries = ("", tr_n("{size}  ·  {count} cut", "{size}  ·  {count} cuts", cuts, size=size))
-            tip = ""
-        self.summary.setToolTip(tip)
-        self._show_summary()
-
-    def _show_summary(self) -> None:
-        text = self._summaries[self._extent is not Extent.ALL]
-        self.summary.setText(text)
-        self.summary.setVisible(bool(text))
+        self.summary.setText(tr("trimmed, {percent:.1f} % cut off", percent=percent) if removed_share else "")
+        tip = tr(
+            "Trimmed: {percent:.1f} % of the sheet is cut off along the target, also in the cut file.",
+            percent=percent,
+        )
+        self.summary.setToolTip(tip if removed_share else "")
 
     def show_waiting(self) -> None:
         """Designs are being made; there is no plan to show before one is chosen."""
         self.show_plan(None)
-        self._warn(tr("The cut plan appears when the run is done."), calm=True)
+        self._warn(tr("The cut plan appears when the run is done."))
 
     def show_refusal(self, sentence: str) -> None:
         """Say why no plan can be made with these numbers."""
         self.exports.allow(cuts=False, pictures=True)
         self._forget_numbers()
-        self._warn(sentence, calm=False)
+        self._warn(sentence, muted=False)
 
     def show_untrimmed(self) -> None:
         """Forget the words on a trimmed design at once, before the plan of the whole one is made."""
-        if self.summary.toolTip():
-            self._forget_summary()
-
-    def _forget_summary(self) -> None:
-        self._summaries = ("", "")
-        self.summary.setToolTip("")
-        self._show_summary()
+        self._show_trim(0.0)
 
     def _forget_numbers(self) -> None:
-        self._forget_summary()
-        for label in self.numbers.values():
-            label.setText(UNKNOWN)
+        self._show_trim(0.0)
+        for number in self.numbers.values():
+            number.setText(UNKNOWN)
 
-    def _warn(self, text: str, calm: bool, muted: bool | None = None) -> None:
+    def _warn(self, text: str, muted: bool = True) -> None:
         first, *more = text.split("\n")
         self.warnings.setText(tr("{first}  (+{count} more)", first=first, count=len(more)) if more else first)
         self.warnings.setToolTip(text)
-        self.warnings.setObjectName("muted" if (calm if muted is None else muted) else "warning")
+        self.warnings.setObjectName("muted" if muted else "warning")
         self.warnings.style().unpolish(self.warnings)
         self.warnings.style().polish(self.warnings)
-        self._calm = calm
-        self._show_warning()
-
-    def _show_warning(self) -> None:
-        """What is wrong stays in sight even when the numbers are folded away."""
-        self.warnings.setVisible(self._extent is Extent.ALL or not self._calm)
 
 
 def format_copies(plan: CutPlan) -> str:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.make.cuts_page import CutsPage
 from kirigami_studio.gui.make.cutting import CutPlanner, FabricationEditor
 from kirigami_studio.gui.make.fabrication_panel import FabricationPanel
@@ -16,6 +18,7 @@ from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.gui.stage.as_cut import AsCutEstimates
 from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.project.document import Document
+from kirigami_studio.settings.fabrication import machine_for
 from kirigami_studio.studio.making import MadePieces, Planned
 
 if TYPE_CHECKING:
@@ -80,6 +83,8 @@ class FabricationPresenter(QObject):
     def show_document(self, document: Document) -> None:
         """The document has changed: the numbers that it is cut with."""
         self._panel.show_settings(document.fabrication)
+        with suppress(KirigamiError):  # a machine is gone, which the plan tells
+            self._cuts.view.show_bed(machine_for(document.fabrication).reach_mm)
 
     def show_design(self, entry: Entry | None) -> None:
         """Another design is on the stage, or none."""

@@ -2,29 +2,35 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QMenu, QPushButton, QSizePolicy, QVBoxLayout
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QIcon
+from PySide6.QtWidgets import QFrame, QListWidget, QListWidgetItem
 
-from kirigami_studio.fabricate.machine import Machine, MachineKind, cuttable, machines
-from kirigami_studio.fabricate.material import find_material
+from kirigami_studio.fabricate.machine import MachineKind, cuttable, find_machine, machines
+from kirigami_studio.foundation.resources import resource
+from kirigami_studio.foundation.settings import settings_of
 from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.settings.layers import note_on
 
-#: Kinds of machines in the order in which they are offered, with their names on the buttons.
+#: What each construction is called.
+CONSTRUCTIONS = {one.value: one for one in settings_of(FabricationSettings)["construction"].setting.choices}
+#: Kinds of machines in the order in which they are listed, with what they are good for.
 KINDS = (
-    (MachineKind.HAND, mark("Paper and scissors"), mark("Print a PDF on paper or thin card and cut along its lines.")),
-    (MachineKind.KNIFE, mark("Cutting plotter"), mark("A blade, as in Cricut and Silhouette machines.")),
-    (MachineKind.CO2, mark("CO2 laser"), mark("Card, plastics, felt, leather.")),
-    (MachineKind.DIODE, mark("Diode laser"), mark("Card, felt, leather, plywood.")),
-    (MachineKind.UV, mark("UV laser"), mark("Thin films and foils.")),
-    (MachineKind.PRINTER, mark("3D printer"), mark("PLA, PETG and TPU: pieces with their pins, or one soft sheet.")),
+    (MachineKind.HAND, mark("Print a PDF on paper or thin card and cut along its lines.")),
+    (MachineKind.KNIFE, mark("A blade, as in Cricut and Silhouette machines.")),
+    (MachineKind.CO2, mark("Card, plastics, felt, leather.")),
+    (MachineKind.DIODE, mark("Card, felt, leather, plywood.")),
+    (MachineKind.UV, mark("Thin films and foils.")),
+    (MachineKind.PRINTER, mark("PLA, PETG and TPU: pieces with their pins, or one soft sheet.")),
 )
+#: Pixels: the picture of a construction, and the least height of the list.
+PICTURE, LEAST_LIST = QSize(56, 56), 150
 
 
 class CuttingQuestion(QFrame):
-    """Asks for the machine, then for a material that it cuts: one button for each kind."""
+    """Asks for the machine, then for a material that it cuts, with a picture of the sheet that it becomes."""
 
     answered = Signal(str, str)  #: keys of a machine and of a material
     declined = Signal()
@@ -32,71 +38,66 @@ class CuttingQuestion(QFrame):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("machineQuestion")
-        self.title = QLabel(tr("What will you cut with?"))
-        self.title.setObjectName("cardTitle")
-        self.why = QLabel(tr("It decides how fine designs may be. You can change it at any time."))
-        self.why.setObjectName("muted")
-        self.why.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.later = QPushButton(tr("Not now"))
-        self.later.setObjectName("link")
-        self.later.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.later.setToolTip(tr("Start with thin film and a UV laser; the material can be changed at any time."))
+        self._machine = ""
+        self.title = label(name="cardTitle", wraps=True)
+        self.back = push_button(tr("Machines"), tr("Back to the list of machines."), name="link")
+        self.back.clicked.connect(self.offer)
+        tip = tr("Start with thin film and a UV laser; the material can be changed at any time.")
+        self.later = push_button(tr("Not now"), tip, name="link")
         self.later.clicked.connect(self.declined)
-        self.buttons: dict[MachineKind, QPushButton] = {}
-        head = QHBoxLayout()
-        head.addWidget(self.title, 1)
-        head.addWidget(self.later)
-        self._grid = QGridLayout()
-        self._grid.setSpacing(8)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(12, 6, 8, 10)
-        column.setSpacing(6)
-        column.addLayout(head)
-        column.addWidget(self.why)
-        column.addLayout(self._grid)
+        self.list = QListWidget()
+        self.list.setObjectName("machineList")
+        self.list.setMinimumHeight(LEAST_LIST)
+        self.list.setIconSize(PICTURE)
+        self.list.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.list.setTextElideMode(Qt.TextElideMode.ElideRight)
+        self.list.itemClicked.connect(self._take)
+        self.list.itemActivated.connect(self._take)
+        head = row((self.title, 1), self.back, self.later, spacing=0)
+        column(head, (self.list, 1), on=self, spacing=4, margins=(10, 6, 8, 8))
 
     def offer(self) -> None:
-        """Offer all machines by their kinds, bundled and own ones."""
-        known = sorted(machines().items.values(), key=lambda machine: tr(machine.name).casefold())
-        for kind, name, about in KINDS:
-            found = [machine for machine in known if machine.kind is kind]
-            if found and kind not in self.buttons:
-                self._add(kind, tr(name), tr(about), found)
+        """List all machines by their kinds, bundled and own ones."""
+        order, about = [kind for kind, _ in KINDS], dict(KINDS)
+        known = sorted(
+            machines().items.values(), key=lambda machine: (order.index(machine.kind), tr(machine.name).casefold())
+        )
+        self._begin(tr("What will you cut with?"), "")
+        for machine in known:
+            self._add(tr(machine.name), machine.key, tr(about[machine.kind]))
 
-    def _add(self, kind: MachineKind, name: str, about: str, found: list[Machine]) -> None:
-        button = QPushButton(name)
-        button.setObjectName("machineChoice")
-        button.setToolTip(about)
-        button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        menu = QMenu(button)
-        for machine in found:
-            self._offer_materials(menu if len(found) == 1 else menu.addMenu(tr(machine.name)), machine)
-        button.setMenu(menu)
-        button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.buttons[kind] = button
-        self._arrange()
-
-    def _offer_materials(self, menu: QMenu, machine: Machine) -> None:
-        """The materials that a machine cuts, by name; those that one sheet cannot be made of come last and say so."""
-        menu.setToolTipsVisible(True)
-        taken = [
-            (material.limits_note is not None, tr(material.name), key) for key, material in cuttable(machine).items()
-        ]
-        for _, name, key in sorted(taken):
-            action, material = menu.addAction(name), find_material(key)
+    def _offer_materials(self, key: str) -> None:
+        """List what a machine cuts, by name; what one sheet cannot be made of comes last and says so."""
+        machine = find_machine(key)
+        self._begin(tr("{machine}: which material?", machine=tr(machine.name)), key)
+        offered = cuttable(machine).items()
+        for key, material in sorted(
+            offered, key=lambda one: (one[1].limits_note is not None, tr(one[1].name).casefold())
+        ):
             note = note_on(material, FabricationSettings())
-            action.setToolTip(tr(material.note) if note is None else note.text)
-            action.triggered.connect(lambda _=False, key=key: self.answered.emit(machine.key, key))
+            item = self._add(tr(material.name), key, tr(material.note) if note is None else note.text)
+            construction = material.construction
+            item.setText(f"{item.text()}\n{tr(CONSTRUCTIONS[construction].label)}")
+            item.setIcon(QIcon(str(resource("constructions", f"{construction.value}.png"))))
 
-    def _arrange(self) -> None:
-        """Put buttons in one row or in rows of three or two, where the reason gives way."""
-        buttons = list(self.buttons.values())
-        widest = max((button.sizeHint().width() for button in buttons), default=0)
-        columns = next((count for count in (len(KINDS), 3) if count * (widest + 8) <= self.width()), 2)
-        for place, button in enumerate(buttons):
-            self._grid.addWidget(button, *divmod(place, columns))
-        self.why.setVisible(columns > 3)
+    def _begin(self, title: str, machine: str) -> None:
+        self._machine = machine
+        self.list.clear()
+        self.list.setAccessibleName(title)
+        self.title.setText(title)
+        self.back.setVisible(bool(machine))
 
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        super().resizeEvent(event)
-        self._arrange()
+    def _add(self, text: str, key: str, tip: str) -> QListWidgetItem:
+        item = QListWidgetItem(text, self.list)
+        item.setData(Qt.ItemDataRole.UserRole, key)
+        item.setToolTip(tip)
+        return item
+
+    def _take(self, item: QListWidgetItem) -> None:
+        key: str = item.data(Qt.ItemDataRole.UserRole)
+        if self._machine:
+            self.answered.emit(self._machine, key)
+        else:
+            self._offer_materials(key)
+            self.list.setFocus()
+            self.list.setCurrentRow(0)

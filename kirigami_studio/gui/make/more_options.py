@@ -11,13 +11,13 @@ from kirigami_studio.fabricate.material import Construction, library
 from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.widgets.card import ElidedLabel, ToolButton
+from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.form import Form
 from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, pin_sizes
 
 
 class MoreOptions(QWidget):
-    """Reports each changed field by name; folded away until asked for."""
+    """Reports each changed field by name."""
 
     options_changed = Signal(dict)  #: field of CutOptions -> value
     changed = Signal(dict)  #: field of FabricationSettings -> value
@@ -25,12 +25,6 @@ class MoreOptions(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.fold = ToolButton(
-            "moreOptions", "down", tr("More options: connector style, order, tabs, copies, machine, DXF version.")
-        )
-        self.fold.setText(tr("More options"))
-        self.fold.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        self.fold.setCheckable(True)
         self.cuts, self.files = Form(CutOptions, parent=self), Form(FabricationSettings, parent=self)
         self.style_, self.order = self.cuts.choice("style"), self.cuts.choice("order")
         self.tabs, self.tab_mm = self.cuts.whole("tabs"), self.cuts.decimal("tab_mm")
@@ -46,14 +40,11 @@ class MoreOptions(QWidget):
         self.rows.setObjectName("muted")
         self.rows.setFixedHeight(self.copies.sizeHint().height())  # beside the numbers, not beside their captions
         self.rows.setAccessibleName(tr("Rows of copies"))
-        self.content = QWidget()
-        self.content.setObjectName("plain")
         self._lay_out()
         self._connect()
-        self.content.hide()
 
     def _lay_out(self) -> None:
-        table = QGridLayout(self.content)
+        table = QGridLayout(self)
         table.setContentsMargins(0, 0, 0, 0)
         table.setHorizontalSpacing(8)
         table.setVerticalSpacing(6)
@@ -79,14 +70,8 @@ class MoreOptions(QWidget):
             table.addLayout(row, line, 0, 1, 4)
         for column in range(4):
             table.setColumnStretch(column, 1)
-        whole = QVBoxLayout(self)
-        whole.setContentsMargins(0, 0, 0, 0)
-        whole.setSpacing(6)
-        whole.addWidget(self.fold, 0, Qt.AlignmentFlag.AlignLeft)
-        whole.addWidget(self.content)
 
     def _connect(self) -> None:
-        self.fold.toggled.connect(self._show_content)
         self.cuts.changed.connect(self.options_changed)
         self.files.changed.connect(self.changed)
         for form in (self.cuts, self.files):
@@ -101,23 +86,18 @@ class MoreOptions(QWidget):
         self.copy_gap.setEnabled(settings.options.copies != 1)
 
     def _show_pins(self, settings: FabricationSettings) -> None:
-        """Show the sizes that pinned and backed sheets have, where the sheet is one."""
+        """Offer what pinned and backed sheets have, with its sizes, where the sheet is one."""
         try:
             construction, sizes = construction_for(settings), pin_sizes(settings)
         except KirigamiError:  # its material is gone, or its ears are; the plan says so
             return
         self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm, "clearance_mm": sizes.clearance_mm})
         pinned = construction is Construction.PINNED
-        for name in ("fastener", "held_by", "moved_by"):
-            self.files.fields[name].setEnabled(pinned)
-        self.files.fields["held_when"].setEnabled(pinned and settings.held_by is not HoldKind.NONE)
-        for name in ("magnet_mm", "magnet_height_mm"):
-            self.files.fields[name].setEnabled(pinned and settings.held_by is HoldKind.MAGNETS)
-        for name in ("pin_mm", "ear_mm", "clearance_mm"):
-            self.files.fields[name].setEnabled(pinned or construction is Construction.PRINTED)
-        for name in ("gap_mm", "second_material", "board_cut"):
-            self.files.fields[name].setEnabled(construction is Construction.BACKED)
-
-    def _show_content(self, shown: bool) -> None:
-        self.content.setVisible(shown)
-        self.fold.show_icon("up" if shown else "down")
+        for names, offered in (
+            (("fastener", "moved_by"), pinned),
+            (("held_when",), settings.held_by is not HoldKind.NONE),
+            (("magnet_mm", "magnet_height_mm"), settings.held_by is HoldKind.MAGNETS),
+            (("pin_mm", "ear_mm", "clearance_mm"), pinned or construction is Construction.PRINTED),
+            (("gap_mm", "second_material", "board_cut"), construction is Construction.BACKED),
+        ):
+            self.files.offer(names, offered)

@@ -188,7 +188,7 @@ def headline(state: VerdictState) -> str:
 
 def tip(fix: Fix) -> str:
     """What was found when a fix was tried."""
-    lines = [tr("Tried on this design: {level}.", level=fix.verdict.level.words)]
+    lines = [tr("Tried on this design: {level}.", level=fix.verdict.level_words)]
     lines += [problem.text for problem in fix.verdict.problems]
     if fix.instead:
         lines.append(tr("The designs on this grid go."))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QObject, QSize
-from PySide6.QtWidgets import QProgressBar, QWidget
+from PySide6.QtCore import QObject, QSize, Qt
+from PySide6.QtWidgets import QProgressBar, QSizePolicy, QStackedLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.run.generation import Generation
@@ -15,14 +15,15 @@ from kirigami_studio.gui.run.settings_panel import SettingsPanel
 from kirigami_studio.gui.session.queue import JobCallbacks
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.widgets import icons
-from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
+from kirigami_studio.gui.widgets.card import ElidedLabel
+from kirigami_studio.gui.widgets.layouts import column, plain_pane, push_button, row
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.project.document import Document
 from kirigami_studio.studio import importing
 
 
 class GenerateBar(QWidget):
-    """One big button; while a run goes on, its progress and a Cancel button."""
+    """One big button; while a run goes on, its progress and a Cancel button in the same place."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -33,28 +34,30 @@ class GenerateBar(QWidget):
         self.progress = QProgressBar()
         self.progress.setTextVisible(False)
         self.progress.setAccessibleName(tr("Run progress"))
-        self.progress_text = label()
-        buttons = row((self.generate, 1), self.stop, spacing=8)
-        column(buttons, self.progress, self.progress_text, on=self, spacing=6)
+        self.progress_text = ElidedLabel(Qt.TextElideMode.ElideRight)
+        self._work = plain_pane()
+        row((column(self.progress_text, self.progress, spacing=3), 1), self.stop, on=self._work, spacing=8)
+        self._work.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
+        self._pages = QStackedLayout(self)  # as high as the button, so that nothing moves when a run begins
+        self._pages.addWidget(self.generate)
+        self._pages.addWidget(self._work)
         self.show_idle()
 
     def show_ready(self, ready: bool) -> None:
         """Whether there is a target to design for."""
-        if not self.stop.isVisibleTo(self):
+        if self._pages.currentWidget() is self.generate:
             self.generate.setEnabled(ready)
 
     def show_running(self, total: int) -> None:
         """A run has begun."""
         self.generate.setEnabled(False)
-        self.generate.setText(tr("Generating …"))
         self.show_work(tr("Starting (0 of {total})", total=total))
 
     def show_work(self, sentence: str) -> None:
         """Something goes on that can be stopped."""
         self.progress.setRange(0, 0)
         self.progress_text.setText(sentence)
-        for part in (self.stop, self.progress, self.progress_text):
-            part.show()
+        self._pages.setCurrentWidget(self._work)
 
     def show_progress(self, done: int, total: int, message: str) -> None:
         """A run moves on; the bar is indefinite until the first design is there."""
@@ -68,9 +71,7 @@ class GenerateBar(QWidget):
     def show_idle(self) -> None:
         """No run is going on."""
         self.generate.setEnabled(True)
-        self.generate.setText(tr("Generate"))
-        for part in (self.stop, self.progress, self.progress_text):
-            part.hide()
+        self._pages.setCurrentWidget(self.generate)
 
     def set_palette(self, palette: Palette) -> None:
         self.generate.setIcon(icons.icon("generate", palette, palette.on_accent))

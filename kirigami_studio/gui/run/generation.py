@@ -81,9 +81,8 @@ class Generation(QObject):
             self._start(lambda target: self.planner.alike(target, nearness))
 
     def cancel(self) -> None:
-        """Ask the run to stop; the document stays as it is."""
+        """Stop the run at once; the document stays as it is."""
         self.run.cancel()
-        self._session.set_status(tr("Stopping …"))
 
     def _start(self, plan_for: Callable[[Outline], RunPlan]) -> None:
         session = self._session
@@ -398,8 +397,10 @@ class DesignRun(QObject):
         self.started.emit(request.k)
 
     def cancel(self) -> None:
-        """Ask it to stop at its next candidate."""
-        self._job.cancel()
+        """Stop it at once: whatever it still loads or computes until its next report goes unheard."""
+        if self.running:
+            self._job.stop()
+            self._cancel()
 
     def abandon(self) -> None:
         """Stop it and ignore what it would still report."""

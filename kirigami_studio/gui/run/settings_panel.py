@@ -1,4 +1,7 @@
-"""The form of the next run: grid, symmetry, balance, angle, number; under More the second target and the search."""
+"""The form of the next run: grid, symmetry, balance, angle, number; under More the search; and a second target.
+
+The row of the second target is made here; the window puts it below the drawing board.
+"""
 
 from __future__ import annotations
 
@@ -32,10 +35,7 @@ NONE, PRESENT = "none", "present"
 #: The angle (degrees) is above that of the first target by this at least.
 ANGLE_STEP = 0.1
 PICTURE = QSize(20, 20)
-ABOUT_SECOND = mark(
-    "Second target: a shape that the sheet should also show on its way, in any size and rotation. Choose it here, or "
-    "drop a file with a shape."
-)
+ABOUT_SECOND = mark("Second target: a shape that the sheet also shows on its way. Choose it, or drop a file here.")
 
 
 class SecondTargetRow(QWidget):
@@ -175,7 +175,6 @@ class SettingsPanel(Card):
         self._symmetry_found = ""
         self._chosen_grid: tuple[int, int] | None = None
         self._start = RECTANGLE
-        self._has_second = False
         self.form = Form(DesignSettings, 48, parent=self)
         #: What is known about generators by their names; others are listed by name alone.
         self._variants = {str(one.value): one for one in self.form.settings["variant"].setting.choices}
@@ -209,7 +208,7 @@ class SettingsPanel(Card):
         self.more = ToolButton(
             "moreSettings",
             "down",
-            tr("More settings: second target, seed, model, polish, preference, rim, start weight, search."),
+            tr("More settings: seed, model, polish, preference, rim, start weight, search."),
             checkable=True,
         )
         self.more.setText(tr("More"))
@@ -232,14 +231,12 @@ class SettingsPanel(Card):
         caption, content = self.form.captioned, plain_pane()
         self.hidden = plain_pane()
         self.hidden.hide()
-        self.second.hide()
         symmetry, phi, count = caption("symmetry"), caption("phi"), caption("k")
         start, weight = captioned(tr("S&tart as"), self.start, self.start), self.start_form.captioned("weight")
         column(
             row((captioned(tr("&Grid (voids)"), self.rows, grid), 12), (symmetry, 5), spacing=8),
             row(label(tr("Mat&ch"), self.regular), (self.regular, 1), label(tr("Regular")), spacing=8),
             row((start, 14), (phi, 9), (count, 7), spacing=8),
-            self.second,
             self.hidden,
             on=content,
             spacing=8,
@@ -306,12 +303,7 @@ class SettingsPanel(Card):
 
     def _fold(self, shown: bool) -> None:
         self.hidden.setVisible(shown)
-        self._show_second()
         self.more.show_icon("up" if shown else "down")
-
-    def _show_second(self) -> None:
-        """A second target that is in force is in sight, whatever is folded away."""
-        self.second.setVisible(self.more.isChecked() or self._has_second)
 
     def restore(self, settings: QSettings) -> None:
         """Show more settings, or not, as the last time."""
@@ -363,9 +355,7 @@ class SettingsPanel(Card):
             with QSignalBlocker(self.regular):
                 self.regular.setValue(round(POSITIONS * settings.regular))
         self._show_start(settings.start)
-        self._has_second = settings.second is not None
         self.second.show_second(settings.second, settings.phi)
-        self._show_second()
         self._show_symmetry_tip()
         self.rim.setToolTip(self.rim.about)
         self._show_preference(fitted=settings.polish > 0 or settings.search > 0)

@@ -45,9 +45,7 @@ WIDTH = 108
 BACK_EDGE, MENU_EDGE = 20, 22
 #: Pixels around the picture, and that a line of text takes.
 MARGIN, LINE = 9.0, 17.0
-TIP = mark(
-    "Start as: what the sheet looks like while it is flat. Click to change it, or drop a file with a shape here."
-)
+TIP = mark("Start as: the flat sheet. Click to change it, or drop a file here.")
 
 
 class StartTile(QAbstractButton):
@@ -111,8 +109,8 @@ class StartTile(QAbstractButton):
         """
         self._start, self._grid, self._width_mm, self._flat = start, grid, width_mm, flat
         self.back.setVisible(not start.is_plain)
-        whose = "" if flat is None else "\n" + tr("The size is that of the flat sheet of the design on the stage.")
-        self.setToolTip(f"{tr(TIP)}\n{self.name}, {self.size_text}{whose}")
+        size = "{name}, {size}" if flat is None else tr("{name}, {size} (design on the stage)")
+        self.setToolTip(f"{tr(TIP)}\n{size.format(name=self.name, size=self.size_text)}")
         self.setAccessibleName(tr("Start as {name}, {size}", name=self.name, size=self.size_text))
         self.update()
 

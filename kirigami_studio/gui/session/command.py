@@ -34,6 +34,7 @@ class WindowState:
     running: bool  #: designs are being generated
     busy: bool  #: the chosen design is being trimmed or fitted again
     editing_target: bool  #: the drawing board is open
+    page: str  #: that is shown
     arrangements: frozenset[str]  #: what can be done with the objects that are selected on the board
     comparing: bool  #: two designs are shown side by side
     ideal: Switch
@@ -41,6 +42,7 @@ class WindowState:
     dark: bool
     follows_system: bool
     still: bool  #: nothing moves by itself
+    inches: bool  #: fields for lengths show inches
 
     @property
     def can_change_design(self) -> bool:
@@ -65,7 +67,7 @@ def always(state: WindowState) -> bool:
 class Command:
     """One command of the window."""
 
-    menu: str  #: title of the menu that it stands in
+    menu: str  #: title of the menu that it stands in, "|" between a menu and one inside
     id: str  #: name of its action
     text: str  #: as in the menu, ``&`` before the mnemonic
     tip: str  #: what it does, for the status line and the tooltip

@@ -228,11 +228,6 @@ class LatestJob(Generic[T]):
         )
         self._number = self._queue.start(name, steps, own)
 
-    def cancel(self) -> None:
-        """Ask the job to stop at its next report; it will say that it did."""
-        if self._number is not None:
-            self._queue.cancel(self._number)
-
     def stop(self) -> None:
         """Stop the job and forget what it would still say."""
         if self._number is not None:

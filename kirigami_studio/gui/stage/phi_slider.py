@@ -113,8 +113,8 @@ class PhiSlider(QSlider):
 
     def _update_tooltip(self) -> None:
         lines = [
-            tr("Deployment angle in degrees: 180° is the flat sheet as cut, 0° fully turned."),
-            tr("Plain bar: moves freely. Thick yellow stripes: touches itself. Thin orange dashes: past the target."),
+            tr("Deployment angle: 180° is the flat sheet, 0° fully turned."),
+            tr("Yellow stripes: touches itself. Orange dashes: past the target."),
         ]
         if self._contact is not None:
             lines.append(tr("First contact at {angle:.1f}°.", angle=math.degrees(self._contact)))
@@ -127,7 +127,6 @@ class PhiSlider(QSlider):
             )
         if self._second is not None:
             lines.append(tr("Second target at {angle:.1f}°.", angle=math.degrees(self._second)))
-        lines.append(tr("Click a mark to go there. Arrow keys: 1°, Page keys: 10°, Home and End: the ends."))
         self.setToolTip("\n".join(lines))
 
     def sizeHint(self) -> QSize:  # noqa: N802 - Qt's name

@@ -15,9 +15,9 @@ from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import cut_for
-from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned
+from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import one_sheet
-from kirigami_studio.studio.making import CutRequest, MadePieces, Planned, picturing
+from kirigami_studio.studio.making import CutRequest, MadePieces, Planned, has_pieces, picturing
 
 if TYPE_CHECKING:
     from kirigami_studio.assembly.posed_pieces import PosedPieces
@@ -48,7 +48,7 @@ class PieceReader(QObject):
         self._known: dict[Candidate, tuple[FabricationSettings, PosedPieces | None]] = {}
         self._target: Outline | None = None
         self._document: Document | None = None  # that the following belongs to
-        self._pinned, self._cut = False, FabricationSettings()
+        self._made_of_pieces, self._cut = False, FabricationSettings()
         self._cuts: dict[Candidate, FabricationSettings] = {}  # of designs that were asked for
         self._waiting: dict[Candidate, None] = {}
         self._in_work: dict[Candidate, FabricationSettings] = {}  # the design whose pieces are being made
@@ -72,7 +72,7 @@ class PieceReader(QObject):
     def of(self, candidate: Candidate) -> PosedPieces | None:
         """The pieces of a design, which are made soon if they are not there; None for panels."""
         self._follow(self._session.document)
-        if not self._pinned or self._target is None:
+        if not self._made_of_pieces or self._target is None:
             return None
         cut, pieces = self._known.get(candidate, (None, None))
         wanted = self._cut_of(candidate)
@@ -98,7 +98,7 @@ class PieceReader(QObject):
         if document is self._document:
             return
         self._document, self._cut = document, one_sheet(document.fabrication)
-        self._pinned, self._cuts = is_pinned(document.fabrication), {}
+        self._made_of_pieces, self._cuts = has_pieces(document.fabrication), {}
         if document.target != self._target:
             self._target, self._known = document.target, {}
             self._waiting.clear()

@@ -24,8 +24,8 @@ from kirigami_studio.outlines.reach import reach_of, reach_texts
 from kirigami_studio.studio.targets import Picture
 
 OPENED_SIZE = mark("Size of the opened shape, mm; 3 in or 8.5 cm work too.")
-FOLLOWED = mark("The flat sheet is made as wide as it takes; a flat width can be typed under Fabrication instead.")
-TYPED_WIDTH = mark("This follows from the flat width that was typed; a size typed here takes its place.")
+FOLLOWED = mark("The flat width follows; it can be typed on the page Make instead.")
+TYPED_WIDTH = mark("It follows from the flat width that was typed on the page Make.")
 
 
 class OpenedSizeRow(QWidget):
@@ -193,7 +193,7 @@ class TargetPanel(Card):
         self.buttons["edit"].setChecked(on)
         for part in (self.tools, self.refine):
             part.setVisible(on)
-        self.start.setVisible(not on)
+        self.buttons["edit"].setVisible(not on)  # Done leaves the board
         self.opened.fold(on)
         if on != self.editing:
             self.editing = on

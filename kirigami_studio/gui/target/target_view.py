@@ -335,8 +335,6 @@ class TargetView(Canvas):
             Qt.Key.Key_Equal: closer,
             Qt.Key.Key_Minus: away,
             Qt.Key.Key_0: self.fit,
-            Qt.Key.Key_1: self.zoom_to_real_size,
-            Qt.Key.Key_2: self.zoom_to_selection,
         }
 
     def _pointer_event(self, event: QMouseEvent) -> PointerEvent:

@@ -31,8 +31,7 @@ class CommandActions:
         return self.actions[command]
 
     def _action(self, command: Command) -> QAction:
-        if command.menu not in self._menus:
-            self._menus[command.menu] = self._window.menuBar().addMenu(command.menu)
+        menu = self._menu(command.menu)
         action = command.switch
         if action is None:
             action = QAction(command.text, self._window)
@@ -41,10 +40,17 @@ class CommandActions:
         action.setObjectName(command.id)
         action.setShortcuts([QKeySequence(keys) for keys in command.shortcuts])
         if command.gap:
-            self._menus[command.menu].addSeparator()
-        self._menus[command.menu].addAction(action)
+            menu.addSeparator()
+        menu.addAction(action)
         self._window.addAction(action)
         return action
+
+    def _menu(self, title: str) -> QMenu:
+        """The menu of a title, made where it is the first time."""
+        if title not in self._menus:
+            outer, _, own = title.rpartition("|")
+            self._menus[title] = self._menu(outer).addMenu(own) if outer else self._window.menuBar().addMenu(own)
+        return self._menus[title]
 
     def _run(self, name: str, _: bool = False) -> None:
         command = next(one for one in self.records if one.id == name)

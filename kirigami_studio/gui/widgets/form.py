@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
 from PySide6.QtCore import QObject, QSignalBlocker, Qt, Signal
@@ -10,8 +10,9 @@ from PySide6.QtWidgets import QCheckBox, QLayout, QSpinBox, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.settings import NamedSetting, settings_of
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.widgets.card import captioned, compact
+from kirigami_studio.gui.widgets.card import compact
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox, Choices
+from kirigami_studio.gui.widgets.layouts import column, label
 from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField, number_field
 
 #: A field of a form.
@@ -44,6 +45,7 @@ class Form(QObject):
         self.settings: Mapping[str, NamedSetting] = settings_of(kind)
         self.fields: dict[str, Field] = {}
         self._show: dict[str, Callable[[Any], None]] = {}
+        self._captions: dict[str, QWidget] = {}
         self._width, self._prefix = width, prefix
 
     def whole(self, name: str) -> QSpinBox:
@@ -97,7 +99,16 @@ class Form(QObject):
     def captioned(self, name: str, content: QWidget | QLayout | None = None) -> QVBoxLayout:
         """A field that was made below the caption of its setting, alone or within ``content``."""
         caption = "" if isinstance(self.fields[name], QCheckBox) else tr(self.settings[name].setting.label)
-        return captioned(caption, self.fields[name], self.fields[name] if content is None else content)
+        words, field = label(caption, self.fields[name]), self.fields[name]
+        self._captions[name] = words
+        return column(words, field if content is None else content, spacing=3)
+
+    def offer(self, names: Iterable[str], on: bool) -> None:
+        """Show fields with their captions, or take them away."""
+        for name in names:
+            self.fields[name].setEnabled(on)
+            for part in (self.fields[name], self._captions[name]):
+                part.setVisible(on)
 
     def remaining(self, elsewhere: Collection[str] = ()) -> list[QVBoxLayout]:
         """Make the fields of settings with a caption that have none yet, here or ``elsewhere``."""

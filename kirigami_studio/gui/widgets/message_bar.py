@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QRect, Qt, Signal
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtCore import QEvent, QRect, Qt, QTimer, Signal
+from PySide6.QtGui import QGuiApplication, QHideEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QLabel, QPlainTextEdit, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.words import tr
@@ -19,12 +19,14 @@ from kirigami_studio.gui.widgets.card import ToolButton
 from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
+#: Milliseconds after which a hint or a success has been read.
+FADE_MS = 12_000
 #: Lines of details that are shown without scrolling.
 MOST_LINES = 9
 
 
 class MessageBar(QFrame):
-    """Shows the newest message; earlier ones stay a click away until they are closed.
+    """Shows the newest message; warnings and errors stay a click away until they are closed, others go by themselves.
 
     Its owner says where it lies, by :meth:`lay_over`, whenever that changes or ``content_changed`` is told.
     """
@@ -62,6 +64,8 @@ class MessageBar(QFrame):
         self.next.clicked.connect(lambda: self._go(self._at + 1))
         self.close_button.clicked.connect(self.close_message)
         self.close_all_button.clicked.connect(lambda: self.dismiss(*Tone))
+        self._fading = QTimer(self, singleShot=True, interval=FADE_MS)
+        self._fading.timeout.connect(self._fade)
         self.hide()
 
     def _lay_out(self) -> None:
@@ -136,6 +140,7 @@ class MessageBar(QFrame):
     def _go(self, index: int) -> None:
         self.setVisible(bool(self._messages))
         self.raise_()
+        self._fading.stop()
         if not self._messages:
             self._at = 0
             return
@@ -153,10 +158,23 @@ class MessageBar(QFrame):
         self.next.setEnabled(self._at < len(self._messages) - 1)
         colour = self._palette.accent if message.tone in (Tone.HINT, Tone.DONE) else self._palette.warning
         self.icon.setPixmap(icons.pixmap(message.tone.value, colour, 20, self.devicePixelRatioF()))
+        if message.tone in (Tone.HINT, Tone.DONE) and not message.actions and self.isVisible():
+            self._fading.start()
         self._show_actions(message)
         self.setProperty("tone", message.tone.value)
         self.style().unpolish(self)
         self.style().polish(self)
+
+    def _fade(self) -> None:
+        """Let a message go that has been read."""
+        if self.underMouse() or self.details.isChecked():
+            self._fading.start()
+        else:
+            self.close_message()
+
+    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt's name
+        super().hideEvent(event)
+        self._fading.stop()
 
     def _show_actions(self, message: Message) -> None:
         while (item := self._actions.takeAt(0)) is not None:

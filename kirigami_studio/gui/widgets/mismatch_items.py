@@ -12,7 +12,7 @@ import numpy.typing as npt
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen, QPixmap
 
-from kirigami_studio.evaluate.posed_design import PosedDesign, polygons_of
+from kirigami_studio.evaluate.posed_design import PosedDesign, covered
 from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.legends import Chip
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 #: Places on each boundary at which the distance is measured, beside its corners.
 STATIONS = 256
-#: What was cut off is snapped to this grid (world units) when it is taken from the sheet.
-GRID = 1e-9
 TINT_ALPHA = 64
 #: Horizontal distance of hatch lines, pixels.
 STRIPE_STEP = 8
@@ -60,21 +58,9 @@ def mismatch(
 
     outer, *holes = as_rings(target)
     wanted = shapely.Polygon(outer, holes)
-    covered: BaseGeometry = shapely.Polygon(sheet)
-    if not covered.is_valid:
-        covered = shapely.make_valid(covered)
-    if removed:
-        off = shapely.union_all(polygons_of(removed), grid_size=GRID)
-        parts = shapely.get_parts(covered)  # of a sheet that touches itself lines may be left over
-        areas = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
-        covered = shapely.difference(areas, off, grid_size=GRID)
-        if voids is not None:
-            openings = shapely.polygons(voids)
-            beside = shapely.area(shapely.intersection(openings, wanted)) < 0.5 * shapely.area(openings)
-            lost = openings[beside & shapely.intersects(openings, off.buffer(10.0 * GRID))]
-            covered = shapely.difference(covered, shapely.union_all(lost, grid_size=GRID), grid_size=GRID)
-    missing, extra = wanted.difference(covered), covered.difference(wanted)
-    gap = boundary_gap(wanted, covered)
+    shown = covered(sheet, wanted, removed, voids)
+    missing, extra = wanted.difference(shown), shown.difference(wanted)
+    gap = boundary_gap(wanted, shown)
     return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area, wanted.area, gap)
 
 

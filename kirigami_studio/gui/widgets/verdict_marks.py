@@ -51,7 +51,7 @@ def badges_of(verdict: Verdict) -> tuple[Badge, ...]:
     from kirigami_studio.studio.verdict import Question, question_of
 
     about = ABOUT if verdict.is_estimate and verdict.is_checked else ""
-    words = verdict.level.words if verdict.is_checked else verdict.words
+    words = verdict.level_words if verdict.is_checked else verdict.words
     found = [Badge(f"{about}{words}", "\n".join(verdict.lines), level_of(verdict), is_level=True)]
     answers = [answer for answer in verdict.answers if answer.question is not Question.FILES]
     for state in WORST_FIRST:

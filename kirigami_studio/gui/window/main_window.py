@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QByteArray, QEvent, QObject, QPoint, QRect, QSettings, QSize, Qt
 from PySide6.QtGui import QCloseEvent, QIcon, QKeyEvent, QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QAbstractSpinBox, QLabel, QMainWindow, QSizePolicy
+from PySide6.QtWidgets import QAbstractSpinBox, QLabel, QMainWindow, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
@@ -16,6 +16,7 @@ from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.widgets.actions import CommandActions
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
+from kirigami_studio.gui.widgets.fitted_text import BriefTooltips
 from kirigami_studio.gui.widgets.layouts import label
 from kirigami_studio.gui.widgets.message_bar import MessageBar
 from kirigami_studio.gui.widgets.number_field import leave_wheel
@@ -29,14 +30,14 @@ from kirigami_studio.gui.window import (
     view_commands,
 )
 from kirigami_studio.gui.window.appearance import Appearance
-from kirigami_studio.gui.window.columns import Columns
 from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.open_dialogs import Dialogs
+from kirigami_studio.gui.window.pages import Page, Pages
 from kirigami_studio.gui.window.presenters import Presenters
 from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.submenus import LanguageMenu, PictureMenu, RecentMenu, offer_context_menus
 from kirigami_studio.gui.window.unsaved_work import UnsavedWork
-from kirigami_studio.gui.window.view_commands import OVERLAY_COMMANDS
+from kirigami_studio.gui.window.view_commands import OVERLAY_COMMANDS, PAGE_COMMANDS
 
 SMALLEST = QSize(1000, 640)
 FIRST = QSize(1440, 900)
@@ -45,7 +46,7 @@ FRAME = QSize(16, 48)
 #: Between a message and what is around it in the tool bar, pixels.
 MESSAGE_GAP = 4
 #: Commands of the toolbar by their ids, before and after the name of the project; "" is a separator.
-TOOLBAR = (("open_project", "save", "", "undo", "redo"), ("theme", "guide"))
+TOOLBAR = (("open_project", "save", "", "undo", "redo", "", *PAGE_COMMANDS), ("theme", "guide"))
 
 
 class MainWindow(QMainWindow):
@@ -68,12 +69,14 @@ class MainWindow(QMainWindow):
         self.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self.resize(FIRST.boundedTo(self.screen().availableSize() - FRAME))
         self.messages = MessageBar(self)
-        self.columns = columns = Columns()
-        self.target, self.settings, self.run = columns.target, columns.settings, columns.run
-        self.stage, self.gallery, self.fabrication = columns.stage, columns.gallery, columns.fabrication
-        self.setCentralWidget(columns)
+        self.pages = pages = Pages()
+        self.target, self.settings, self.run = pages.target, pages.settings, pages.run
+        self.stage, self.gallery, self.welcome = pages.stage, pages.gallery, pages.welcome
+        self.fabrication, self.cuts = pages.fabrication, pages.cuts
+        self.setCentralWidget(pages)
         self._build_status()
         leave_wheel(self)
+        BriefTooltips(self)
         for box in self.findChildren(QAbstractSpinBox):
             box.installEventFilter(self)
         ask = file_dialogs or SystemFileDialogs(self)
@@ -96,7 +99,7 @@ class MainWindow(QMainWindow):
         self.heading.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.heading.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self.presenters = Presenters(
-            columns,
+            pages,
             services,
             dialogs=self.dialogs,
             files=self.files,
@@ -110,7 +113,7 @@ class MainWindow(QMainWindow):
         self._refresh_commands()
         self._build_toolbar()
         self.messages.content_changed.connect(self._place_messages)
-        self.stage.welcome.offer(self.commands.actions)
+        self.welcome.offer(self.commands.actions)
         self.appearance.changed.connect(self.commands.set_palette)
         self.appearance.set_theme(palette)
 
@@ -155,14 +158,14 @@ class MainWindow(QMainWindow):
                 project=project,
                 targeting=targeting,
                 show_library=dialogs.show_library,
-                show_pairs=dialogs.show_pairs,
+                show_pairs=presenters.show_pairs,
                 export_artwork=dialogs.export_artwork,
                 close=self.close,
             ),
             *edit_commands.commands(project, targeting, dialogs, self.pasting, self.picturing),
             *draw_commands.commands(self.target, self.session.post),
             *design_commands.commands(services, self.stage, self.gallery, presenters, dialogs),
-            *view_commands.commands(self.columns, self.session, presenters, self.appearance),
+            *view_commands.commands(self.pages, self.session, presenters, self.appearance),
             *help_commands.commands(dialogs, self.files.open_sample),
         )
 
@@ -175,7 +178,7 @@ class MainWindow(QMainWindow):
         self.commands.append_menu("theme_system", self.language_menu)
         for name in OVERLAY_COMMANDS:
             self.stage.overlay_menu.addAction(self.commands[name])
-        offer_context_menus(self.target, self.stage, self.commands)
+        offer_context_menus(self.target, self.stage, self.cuts, self.commands)
 
     def _refresh_commands(self) -> None:
         """Enable and name the commands anew at whatever :meth:`state` depends on."""
@@ -190,7 +193,7 @@ class MainWindow(QMainWindow):
             services.regularity.busy_changed,
             self.stage.switches_changed,
             self.stage.comparing_changed,
-            self.target.editing_changed,
+            self.pages.turned,
             self.target.view.context.selection_changed,
         ):
             signal.connect(self.commands.refresh)
@@ -210,11 +213,13 @@ class MainWindow(QMainWindow):
             running=services.run.running,
             busy=services.chosen.busy,
             editing_target=self.target.editing,
+            page=self.pages.page.value,
             arrangements=self.target.arrangements(),
             comparing=stage.comparing,
             ideal=Switch(stage.deployment.slider.jam is not None, stage.deployment.ideal.isChecked()),
             dark=self.appearance.palette.dark,
             follows_system=self.appearance.follows_system,
+            inches=self.appearance.in_inches,
             still=services.preferences.present.motion == "still",
         )
 
@@ -232,15 +237,20 @@ class MainWindow(QMainWindow):
         bar.addWidget(self.heading)
         for name in after:
             bar.addAction(self.commands[name])
+        self.page_buttons: dict[Page, QWidget] = {}
+        for name, page in PAGE_COMMANDS.items():
+            button = self.page_buttons[page] = bar.widgetForAction(self.commands[name])
+            button.setProperty("page", True)
+            button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
 
     def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
         super().showEvent(event)
-        self.columns.share_width(self.width())
-        self.stage.take_focus()
+        self.pages.share_width(self.width())
+        self.target.view.setFocus()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         super().resizeEvent(event)
-        self.columns.fit(self.size())
+        self.pages.share_width(self.width())
         self._place_messages()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
@@ -267,23 +277,23 @@ class MainWindow(QMainWindow):
             self.close()
 
     def restore(self, settings: QSettings) -> None:
-        """Restore the size and columns of the last session."""
+        """Restore size and columns of the last session."""
         geometry = settings.value("geometry")
         if isinstance(geometry, QByteArray):
             self.restoreGeometry(geometry)
-        self.columns.restore(settings)
+        self.pages.restore(settings)
 
     def remember(self, settings: QSettings | None = None) -> None:
         """Save size and columns for the next session, in the user's settings without others."""
         settings = QSettings() if settings is None else settings
         settings.setValue("geometry", self.saveGeometry())
-        self.columns.remember(settings)
+        self.pages.remember(settings)
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name
         if not (self.starts_again or self.unsaved.may_close()):
             event.ignore()
             return
-        self.stage.player.play.setChecked(False)
+        self.pages.stop_playing()
         self.stage.set_comparing(False)  # whose columns would be remembered
         self.dialogs.close()
         self.hide()  # the worker may be deep in an import: let it end out of sight

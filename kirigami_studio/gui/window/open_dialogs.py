@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from kirigami_studio.gui.window.about import AboutWindow
     from kirigami_studio.gui.window.guide import GuideWindow
     from kirigami_studio.gui.window.history_list import HistoryList
-    from kirigami_studio.gui.window.pairs import PairGallery
     from kirigami_studio.gui.window.shortcut_sheet import ShortcutSheet
     from kirigami_studio.outlines.outline import Outline
     from kirigami_studio.studio.parts import PartsRead, Purpose
@@ -74,7 +73,6 @@ class Dialogs(QObject):
         self.about: AboutWindow | None = None
         self.start_board: StartBoard | None = None
         self.second_board: OutlineBoard | None = None
-        self.pairs: PairGallery | None = None
         self.parts: PartPicker | None = None
         self._on_parts: Callable[[Outline, bool], None] = services.targeting.reader.take_chosen
         self.artwork: ArtworkEditor | None = None
@@ -101,6 +99,7 @@ class Dialogs(QObject):
             return
         self.report = ExportReport(self._window, exported.verifications, self._appearance.palette, exported.verdict)
         self.report.folder_wanted.connect(show_in_folder)
+        self.report.open_wanted.connect(open_in_program)
         self.report.show()
 
     def close_report(self) -> None:
@@ -162,17 +161,6 @@ class Dialogs(QObject):
         second = self._services.session.document.settings.second
         self.second_board.begin(None if second is None else second.outline)
         bring_to_front(self.second_board)
-
-    def show_pairs(self) -> None:
-        """Open the gallery of pairs, or bring it to the front."""
-        from kirigami_studio.gui.window.pairs import PairGallery
-
-        if self.pairs is None:
-            self.pairs = PairGallery(self._window, self._services.session.queue)
-            self.pairs.chosen.connect(self._files.open_pair)
-        self._appearance.colour(self.pairs)
-        self.pairs.read()
-        bring_to_front(self.pairs)
 
     def show_parts(self, purpose: Purpose, take: Callable[[Outline, bool], None], read: PartsRead) -> None:
         """Ask which parts of a drawing are the target, the start or the second target."""
@@ -271,7 +259,7 @@ class Dialogs(QObject):
         self.close_report()
         asking = (self.start_board, self.second_board, self.parts)
         read = (self.guide, self.history, self.shortcuts, self.about)
-        for dialog in (self.materials, *read, *asking, self.pairs, self.artwork):
+        for dialog in (self.materials, *read, *asking, self.artwork):
             if dialog is not None:
                 dialog.close()
 
@@ -282,6 +270,11 @@ def bring_to_front(dialog: QWidget) -> None:
     dialog.show()
     dialog.raise_()
     dialog.activateWindow()
+
+
+def open_in_program(path: Path) -> None:
+    """Let the desktop open a written file in its program, such as LightBurn for its projects."""
+    QDesktopServices.openUrl(QUrl.fromLocalFile(str(path)))
 
 
 def show_in_folder(path: Path) -> None:

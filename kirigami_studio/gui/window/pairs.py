@@ -1,12 +1,12 @@
-"""File > Examples of pairs: finished designs from one shape to another, each pictured flat, half open and open."""
+"""Examples of pairs: finished designs from one shape to another, each pictured flat, half open and open."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from PySide6.QtCore import QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QIcon
-from PySide6.QtWidgets import QDialog, QListWidgetItem, QWidget
+from PySide6.QtGui import QHideEvent, QIcon, QShowEvent
+from PySide6.QtWidgets import QListWidgetItem, QWidget
 
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.session.queue import JobCallbacks, JobQueue, LatestJob
@@ -17,50 +17,48 @@ from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.studio.projects import Pair, reading_pairs
 from kirigami_studio.studio.two_states import TwoStates
 
-#: Pixels: the picture of a pair, its card, and the window.
-PICTURE, CARD, SIZE = QSize(294, 98), QSize(308, 141), QSize(968, 632)
-ABOUT = mark("Each is a finished design. Choose one, drag the slider, then change target or start and press Generate.")
+#: Pixels: the picture of a pair, and its card.
+PICTURE, CARD = QSize(258, 86), QSize(270, 124)
+ABOUT = mark("Finished pairs: choose one, drag the slider.")
 
 
-class PairGallery(QDialog):
+class PairList(QWidget):
     """Lists the bundled pairs; a click or Enter opens one."""
 
     chosen = Signal(Path)
 
-    def __init__(self, parent: QWidget, queue: JobQueue) -> None:
-        super().__init__(parent)
-        self.setObjectName("pairGallery")
-        self.setWindowTitle(tr("Examples of pairs"))
-        self.setModal(False)
-        self.resize(SIZE)
+    def __init__(self) -> None:
+        super().__init__()
         self.pairs: list[Pair] = []
         self._palette: Palette = LIGHT
-        self._job = LatestJob[Pair](queue)
+        self._job: LatestJob[Pair] | None = None
         self._undrawn: list[int] = []
         self._drawing = QTimer(self, singleShot=True, interval=0)  # one picture for each turn of the window
         self._drawing.timeout.connect(self._draw_next)
         self.list = picture_list("pairList", tr("Pairs of shapes"), PICTURE, CARD)
+        self.list.setMinimumHeight(CARD.height())
         self.about = label(tr(ABOUT), wraps=True)
-        column((self.list, 1), self.about, on=self, margins=(12, 12, 12, 10))
+        column(self.about, (self.list, 1), on=self, spacing=4)
         self.list.itemClicked.connect(self._on_activated)
         self.list.itemActivated.connect(self._on_activated)
 
-    def read(self) -> None:
+    def read(self, queue: JobQueue) -> None:
         """Read the pairs in the worker, once."""
-        if not self.pairs and not self._job.busy:
+        if self._job is None:
+            self._job = LatestJob[Pair](queue)
             callbacks = JobCallbacks(self._add, on_failed=lambda sentence, _: self.about.setText(sentence))
             self._job.start(tr("reading the examples"), reading_pairs, callbacks)
 
     @property
     def complete(self) -> bool:
         """Whether all pairs are read and drawn."""
-        return bool(self.pairs) and not self._job.busy and not self._undrawn
+        return self._job is not None and not self._job.busy and bool(self.pairs) and not self._undrawn
 
     def set_palette(self, palette: Palette) -> None:
         if palette is not self._palette:
             self._palette = palette
             self._undrawn = list(range(len(self.pairs)))
-            self._drawing.start()
+            self._draw_soon()
 
     def _add(self, pair: Pair) -> None:
         states = TwoStates.of(pair.candidate, pair.design, pair.target, 100.0)
@@ -85,7 +83,7 @@ class PairGallery(QDialog):
         self.list.addItem(item)
         self.pairs.append(pair)
         self._undrawn.append(len(self.pairs) - 1)
-        self._drawing.start()
+        self._draw_soon()
 
     def _draw_next(self) -> None:
         if self._undrawn:
@@ -93,9 +91,20 @@ class PairGallery(QDialog):
             pair = self.pairs[row]
             picture = states_pixmap(pair.design, pair.target, PICTURE, self.devicePixelRatioF(), self._palette)
             self.list.item(row).setIcon(QIcon(picture))
-        if self._undrawn:
+        self._draw_soon()
+
+    def _draw_soon(self) -> None:
+        """Pictures are drawn while they are in sight."""
+        if self._undrawn and self.isVisible():
             self._drawing.start()
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
+        super().showEvent(event)
+        self._draw_soon()
+
+    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt's name
+        super().hideEvent(event)
+        self._drawing.stop()
 
     def _on_activated(self, item: QListWidgetItem) -> None:
         self.chosen.emit(self.pairs[self.list.row(item)].path)
-        self.accept()

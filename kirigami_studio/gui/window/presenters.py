@@ -20,9 +20,9 @@ from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.void_bar import VoidPresenter
 from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.target.target_presenter import StartPresenter, TargetPresenter
-from kirigami_studio.gui.window.columns import Columns
 from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.open_dialogs import Dialogs
+from kirigami_studio.gui.window.pages import Page, Pages
 from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.stage_panel import StagePresenter
 from kirigami_studio.gui.window.welcome_page import WelcomePresenter
@@ -46,7 +46,7 @@ class Presenters(QObject):
 
     def __init__(
         self,
-        columns: Columns,
+        pages: Pages,
         services: Services,
         *,
         dialogs: Dialogs,
@@ -55,10 +55,10 @@ class Presenters(QObject):
         status: QLabel,
         command: Callable[[str], QAction],
     ) -> None:
-        super().__init__(columns)
-        self._columns, self._services, self._dialogs, self._files = columns, services, dialogs, files
+        super().__init__(pages)
+        self._pages, self._services, self._dialogs, self._files = pages, services, dialogs, files
         session, chosen = services.session, services.chosen
-        target, settings, stage, gallery = columns.target, columns.settings, columns.stage, columns.gallery
+        target, settings, stage, gallery = pages.target, pages.settings, pages.stage, pages.gallery
         self.designs = GalleryPresenter(
             gallery,
             settings,
@@ -83,7 +83,7 @@ class Presenters(QObject):
             turn=stage.set_comparing,
         )
         self.all_designs = AllDesignsPresenter(
-            columns.pages,
+            pages.stack,
             gallery,
             self.designs,
             session,
@@ -108,8 +108,8 @@ class Presenters(QObject):
             name_of=gallery.view.model_.name_of,
         )
         self.making = FabricationPresenter(
-            columns.fabrication,
-            stage.cuts,
+            pages.fabrication,
+            pages.cuts,
             stage.verdict,
             session,
             editor=services.fabrication,
@@ -121,7 +121,7 @@ class Presenters(QObject):
         )
         self.run = RunPresenter(
             settings,
-            columns.run,
+            pages.run,
             session,
             services.generation,
             services.regularity,
@@ -140,7 +140,7 @@ class Presenters(QObject):
             showing_before=lambda: stage.showing_before,
             command=command,
         )
-        self.welcome = WelcomePresenter(stage.welcome, session, services.preferences)
+        self.welcome = WelcomePresenter(pages.welcome, session, services.preferences)
         self._connect_session()
         self._connect_stage()
         self._connect_pages()
@@ -161,7 +161,7 @@ class Presenters(QObject):
         self._services.reader.known.connect(self._show_reading)
 
     def _connect_stage(self) -> None:
-        stage, services = self._columns.stage, self._services
+        stage, services = self._pages.stage, self._services
         chosen = services.chosen
         self.designs.named.connect(stage.set_name)
         self.designs.label_wanted.connect(self._show_label)
@@ -180,15 +180,15 @@ class Presenters(QObject):
 
     def _connect_pages(self) -> None:
         """A view in the place of another."""
-        stage = self._columns.stage
+        stage = self._pages.stage
         self.designs.compare_wanted.connect(self.comparison.compare_with)
         stage.comparing_changed.connect(self.comparison.follow)
-        for hidden_by_table in (self._columns.target.editing_changed, stage.comparing_changed):
-            hidden_by_table.connect(self.all_designs.leave_to)
+        stage.comparing_changed.connect(self.all_designs.leave_to)
+        self._pages.turned.connect(lambda page: self.all_designs.leave_to(page is not Page.DESIGN))
         self.all_designs.shown_changed.connect(self._make_way)
 
     def _connect_target(self) -> None:
-        panel, services, dialogs, files = self._columns.target, self._services, self._dialogs, self._files
+        panel, services, dialogs, files = self._pages.target, self._services, self._dialogs, self._files
         panel.buttons["openTarget"].clicked.connect(files.ask_target)
         panel.buttons["library"].clicked.connect(dialogs.show_library)
         panel.view.drops.file_dropped.connect(files.open)
@@ -196,12 +196,12 @@ class Presenters(QObject):
         panel.opened.size_wanted.connect(services.fabrication.set_opened_size)
         panel.opened.drawn_wanted.connect(services.fabrication.cut_at_drawn_size)
         panel.opened.edited.connect(services.session.history.end_drag)
-        settings, second = self._columns.settings, self._columns.settings.second
+        settings, second = self._pages.settings, self._pages.settings.second
         openers: dict[str, Callable[[], object]] = {
             LIBRARY_START: lambda: dialogs.show_start_library(settings.start),
             FILE_START: files.ask_start,
             DRAWN_START: dialogs.show_start_board,
-            PAIRS: dialogs.show_pairs,
+            PAIRS: self.show_pairs,
         }
         for wanted in (panel.start.other_wanted, settings.other_start_wanted):
             wanted.connect(lambda kind: openers[kind]())
@@ -220,7 +220,7 @@ class Presenters(QObject):
             reader.choice_wanted.connect(partial(dialogs.show_parts, purpose, reader.take_chosen))
 
     def _connect_files(self, pasting: PasteReader) -> None:
-        panel, services, dialogs, files = self._columns.fabrication, self._services, self._dialogs, self._files
+        panel, services, dialogs, files = self._pages.fabrication, self._services, self._dialogs, self._files
         panel.materials_wanted.connect(dialogs.show_materials)
         panel.export_wanted.connect(files.export)
         panel.exports.all_wanted.connect(files.export_all)
@@ -231,6 +231,17 @@ class Presenters(QObject):
         for changed in (services.project.stock.added, dialogs.materials_changed):
             changed.connect(self.making.reload_materials)
         pasting.file_wanted.connect(files.open)
+        self._pages.welcome.pairs.chosen.connect(files.open_pair)
+        for opened in (services.project.opened, services.project.recovery.recovered):
+            opened.connect(lambda: self._pages.turn(Page.DESIGN))
+        services.project.begun.connect(lambda: self._pages.turn(Page.SHAPE))
+
+    def show_pairs(self) -> None:
+        """Go to the finished pairs."""
+        pairs = self._pages.welcome.pairs
+        self._pages.turn(Page.SHAPE)
+        pairs.read(self._services.session.queue)
+        pairs.list.setFocus()
 
     # what concerns several places ----------------------------------------------------------------------------------
 
@@ -238,7 +249,7 @@ class Presenters(QObject):
         """A run has begun."""
         self.designs.show_run()
         self.all_designs.show_run()
-        self._columns.target.set_editing(False)
+        self._pages.turn(Page.DESIGN)
         self.stage.show_run()
         self.making.show_run()
         self.run.show_run(total)
@@ -263,7 +274,7 @@ class Presenters(QObject):
         self.run.show_document(document)
         self.start.show()
         self.voids.refresh()
-        self._columns.target.opened.show_size(size_of(document), follows=document.fabrication.opened_mm is not None)
+        self._pages.target.opened.show_size(size_of(document), follows=document.fabrication.opened_mm is not None)
 
     def _show_design(self, entry: Entry | None) -> None:
         """Another design is on the stage, or none."""
@@ -288,31 +299,30 @@ class Presenters(QObject):
 
     def _show_reading(self, reading: TargetReading | None) -> None:
         """Show what the target's shape says of symmetry and grid."""
-        columns, settings = self._columns, self._services.session.document.settings
-        columns.settings.show_symmetry("" if reading is None else reading.symmetry)
-        columns.settings.show_grid_choice(
+        pages, settings = self._pages, self._services.session.document.settings
+        pages.settings.show_symmetry("" if reading is None else reading.symmetry)
+        pages.settings.show_grid_choice(
             None if reading is None else reading.grid, "" if reading is None else reading.reason
         )
-        columns.target.show_start_refusal("" if reading is None else reading.start_refusal)
+        pages.target.show_start_refusal("" if reading is None else reading.start_refusal)
         if reading is not None and reading.grid is not None and settings.auto_grid:
-            columns.target.show_reach(reading.grid)
+            pages.target.show_reach(reading.grid)
         self.start.show()
 
     def _show_label(self, candidate: Candidate | None, card: QRect) -> None:
         """Open name and note of a design beside its card, or beside the title of the stage."""
-        title = self._columns.stage.title
+        title = self._pages.stage.title
         beside = card if card.isValid() else QRect(title.mapToGlobal(QPoint(0, 0)), title.size())
         self._dialogs.show_label(candidate, beside)
 
     def _make_way(self, shown: bool) -> None:
         """The table of all designs comes, or is gone."""
-        columns = self._columns
+        pages = self._pages
         if not shown:
-            columns.stage.take_focus()
+            pages.stage.take_focus()
             return
-        if columns.target.editing:
-            columns.target.set_editing(False)
-        columns.stage.player.play.setChecked(False)
+        pages.turn(Page.DESIGN)
+        pages.stage.player.play.setChecked(False)
 
     def refit(self, on: bool) -> None:
         """Fit the chosen design again, or stop fitting."""
@@ -321,4 +331,4 @@ class Presenters(QObject):
             chosen.refit()
         else:
             chosen.cancel()
-        self._columns.stage.voids.refit.setChecked(chosen.refitting.busy)
+        self._pages.stage.voids.refit.setChecked(chosen.refitting.busy)

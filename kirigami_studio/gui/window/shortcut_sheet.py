@@ -32,7 +32,7 @@ def gestures() -> tuple[Gesture, ...]:
         Gesture(anywhere, tr("Drag"), tr("Pan the view")),
         Gesture(anywhere, tr("Double-click"), tr("Fit view")),
         Gesture(tr("Start tile"), tr("Drop a file"), tr("Start as the shape in it; Delete goes back to the rectangle")),
-        Gesture(board, tr("+ and -, 0, 1, 2"), tr("Zoom; show everything, actual size, the selection")),
+        Gesture(board, tr("+ and -, 0"), tr("Zoom; show everything")),
         Gesture(board, tr("Space+drag or middle button"), tr("Pan the board")),
         Gesture(board, tr("Drag from a ruler"), tr("Pull out a guide; back onto the ruler removes it")),
         Gesture(board, tr("Esc"), tr("Take back one thing: gesture, selection, tool; then leave the board")),
@@ -86,7 +86,7 @@ class ShortcutSheet(SearchWindow):
             if command.shortcuts:
                 keys = tr(" or ").join(shown(keys) for keys in command.shortcuts)
                 text = command.text.replace("&", "")
-                self._add(command.menu.replace("&", ""), command.tip or text, keys, text)
+                self._add(command.menu.replace("&", "").rpartition("|")[2], command.tip or text, keys, text)
         for gesture in gestures():
             self._add(gesture.view, gesture.effect, gesture.does)
 

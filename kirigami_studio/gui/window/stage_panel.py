@@ -1,4 +1,4 @@
-"""The chosen design, large: layout, cuts or comparison, with overlays, plots and the deployment; and its presenter."""
+"""The chosen design, large: layout or comparison, with overlays, plots and the deployment; and its presenter."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.gallery.compare_page import ComparePage
 from kirigami_studio.gui.gallery.gallery_model import described
-from kirigami_studio.gui.make.cut_view import CutView
-from kirigami_studio.gui.make.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.make.verdict_bar import VerdictBar
 from kirigami_studio.gui.session.overlays import USUAL, Overlay
 from kirigami_studio.gui.session.session import Entry, Session
@@ -28,7 +26,6 @@ from kirigami_studio.gui.stage.slider_lines import AsCutLine, EndsLine
 from kirigami_studio.gui.stage.void_bar import VoidBar
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
 from kirigami_studio.gui.widgets.layouts import column, plain_pane
-from kirigami_studio.gui.window.welcome_page import WelcomePage
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio.making import MadePieces, Planned
 from kirigami_studio.studio.two_states import TwoStates, match_of_start, start_of
@@ -55,7 +52,6 @@ NEVER_SAMPLED = mark("Before polish (B). Nothing to compare: the model did not g
 TRIM = mark("Trim to target (Ctrl+T). Cuts the edge panels along the target; every hinge keeps its material.")
 UNTRIM = mark("Trim to target (Ctrl+T). Press again to untrim.")
 TRIMMING = mark("Trimming … Press again, or Esc, to stop.")
-CUTS = mark("Cuts: show the cut plan at kerf width (C).")
 PLOTS = mark("Plots: match, area, size and gaps at every angle (J).")
 
 
@@ -65,7 +61,7 @@ class StagePanel(Card):
     overlays_changed = Signal(frozenset)  #: of Overlay
     before_wanted = Signal(bool)  #: whether the design is to be shown as sampled
     status = Signal(str)
-    switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim`, :attr:`cuts_switch` or the plots
+    switches_changed = Signal()  #: the state of :attr:`before`, :attr:`trim` or the plots
     comparing_changed = Signal(bool)  #: whether several designs are shown side by side
     whole_width_wanted = Signal(bool)  #: more of them than have room beside the other columns
 
@@ -78,13 +74,11 @@ class StagePanel(Card):
         self._width_mm = USUAL_WIDTH_MM
         self._trimmable, self._trimming = True, False
         self._as_cut = UNKNOWN
-        self._sample_allowed = True
         self._posed_for: Outline | None = None  #: the target at whose angle the first design was shown
         self.view = LayoutView()
         self.tour = FaultTour(self.view)
         self.deployment = DeploymentBar()
         self.ends = EndsLine()
-        self.cuts = CutsPage()
         self.as_cut = AsCutLine()
         self.plots = PlotsPanel()
         self.compare = ComparePage()
@@ -92,18 +86,16 @@ class StagePanel(Card):
         self.numbers = FittingLabel()
         self.header.addWidget(self.numbers)
         self.header.addSpacing(8)
-        self.cuts_switch = SwitchButton("cuts", "cuts", tr(CUTS))
-        self.cuts_switch.switch.toggled.connect(lambda on: self._turn_to(self.cuts if on else self._layout_page))
         self.before = SwitchButton("before", "before", tr(BEFORE))
         self.before.switch.toggled.connect(self._toggle_before)
         self.trim = SwitchButton("trim", "trim", tr(TRIM))
         tip = tr(
-            "Edit by hand (H). Scroll over a void to change its ratio (Shift: fine). Drag a void, an outline corner "
-            "or an edge cut. Alt+click or L: lock. Arrows: next void; + and -: ratio."
+            "Edit by hand (H). Scroll over a void, or drag it, a corner of the outline or an edge cut. "
+            "L locks; arrows go to the next void."
         )
         self.hand = SwitchButton("hand", "hand", tip)
         self.hand.switch.toggled.connect(self._toggle_hand)
-        for switch in (self.cuts_switch, self.before, self.trim, self.hand):
+        for switch in (self.before, self.trim, self.hand):
             self.header.addWidget(switch)
         self.header.addSpacing(6)
         self._add_overlays()
@@ -123,7 +115,7 @@ class StagePanel(Card):
         self.overlays_changed.connect(self.compare.set_overlays)
 
     def _add_overlays(self) -> None:
-        """The switches at the right of the header: what is drawn over the layout, or over the cuts."""
+        """The switches at the right of the header: what is drawn over the layout."""
         self.toggles: dict[Overlay, ToolButton] = {}
         self.overlays: dict[Overlay, QAction] = {}
         for overlay, icon, tip in OVERLAYS:
@@ -141,9 +133,6 @@ class StagePanel(Card):
         self.overlay_menu.setToolTipsVisible(True)
         self.overlays_button.setMenu(self.overlay_menu)
         self.header.addWidget(self.overlays_button)
-        for button in self.cuts.toggles.values():
-            self.header.addWidget(button)
-            button.hide()
         self.plots_switch = SwitchButton("plots", "plots", tr(PLOTS))
         self.plots_switch.switch.toggled.connect(self._toggle_plots)
         self.header.addWidget(self.plots_switch)
@@ -161,56 +150,22 @@ class StagePanel(Card):
         self.split.addWidget(self.plots)
         self.split.setStretchFactor(0, 1)
         self.plots.hide()
-        self.welcome, self.voids = WelcomePage(), VoidBar()
+        self.voids = VoidBar()
         below = (self.voids, self.deployment, self.ends, self.as_cut)
-        column((self.welcome, 1), (self.split, 1), *below, on=self._layout_page, spacing=8)
+        column((self.split, 1), *below, on=self._layout_page, spacing=8)
         self.voids.hide()
         self.pages = QStackedWidget()
-        for page in (self._layout_page, self.cuts, self.compare):
+        for page in (self._layout_page, self.compare):
             self.pages.addWidget(page)
         self.body.addWidget(self.pages, 1)
         self.verdict = VerdictBar()
         self.body.addWidget(self.verdict)
 
-    def set_hint(self, icon: str, headline: str, hint: str) -> None:
-        """Say what to do while there is no design."""
-        self.view.set_hint(icon, headline, hint)
-        self.welcome.say(headline, hint)
-
-    def show_run(self, target: Outline | None) -> None:
-        """Show the target until the first design of a run comes; the sample must not hide that."""
-        self._sample_allowed, self._target = False, target
-        self.set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
-        self._show_waiting()
-
-    def show_idle(self) -> None:
-        """No design is on its way."""
-        self._sample_allowed = True
-        self._show_waiting()
-
-    def _show_waiting(self) -> None:
-        self._place_welcome()
+    def show_target(self, target: Outline | None) -> None:
+        """Show the target while there is no design for it yet."""
+        self._target = target
         if self._entry is None:
             self._show()
-
-    def _place_welcome(self) -> None:
-        """Show the welcome page while there is no design, and none on its way."""
-        shown = self._sample_allowed and self._entry is None
-        pages: tuple[QWidget, QWidget] = (self.split, self.welcome)
-        leaving, coming = pages if shown else pages[::-1]
-        focused = self.window().focusWidget()
-        held = focused is not None and (leaving is focused or leaving.isAncestorOf(focused))
-        coming.show()
-        if held:  # else Qt would hand it to the next button
-            (self.welcome if shown else self.view).setFocus()
-        leaving.hide()
-        for part in (self.deployment, self.as_cut):
-            part.setVisible(not shown)
-
-    @property
-    def showing_cuts(self) -> bool:
-        """Whether the cut plan is shown instead of the layout."""
-        return self.cuts_switch.isChecked()
 
     @property
     def comparing(self) -> bool:
@@ -218,18 +173,17 @@ class StagePanel(Card):
         return self.pages.currentWidget() is self.compare
 
     @property
-    def player(self) -> DeploymentBar | CutBar:
+    def player(self) -> DeploymentBar:
         """What Space plays now."""
-        return self.compare.bar if self.comparing else self.cuts.bar if self.showing_cuts else self.deployment
+        return self.compare.bar if self.comparing else self.deployment
 
     @property
-    def _in_sight(self) -> LayoutView | CutView | ComparePage:
-        return self.compare if self.comparing else self.cuts.view if self.showing_cuts else self.view
+    def _in_sight(self) -> LayoutView | ComparePage:
+        return self.compare if self.comparing else self.view
 
     def take_focus(self) -> None:
         """Give the keyboard to what is in sight."""
-        alone = self._in_sight is self.view and self.split.isHidden()
-        (self.welcome if alone else self._in_sight).setFocus()
+        self._in_sight.setFocus()
 
     def fit(self) -> None:
         """Show everything of what is in sight."""
@@ -242,7 +196,6 @@ class StagePanel(Card):
     def set_comparing(self, on: bool) -> None:
         """Show several designs side by side, or one alone."""
         if on != self.comparing:
-            self.cuts_switch.switch.setChecked(False)
             self._turn_to(self.compare if on else self._layout_page)
 
     @property
@@ -255,23 +208,16 @@ class StagePanel(Card):
         self.whole_width_wanted.emit(self.wants_whole_width)
 
     def _turn_to(self, page: QWidget) -> None:
-        compared = self.comparing
-        for bar in (self.deployment, self.cuts.bar, self.compare.bar):
+        for bar in (self.deployment, self.compare.bar):
             bar.play.setChecked(False)
         self.pages.setCurrentWidget(page)
-        cuts = page is self.cuts
         for switch in (self.before, self.hand, self.plots_switch):
             switch.setVisible(page is self._layout_page)
-        for button in (self.overlays_button, *self.toggles.values()):
-            button.setVisible(not cuts)
-        for button in self.cuts.toggles.values():
-            button.setVisible(cuts)
         self.take_focus()
         self.show_title()
         self.switches_changed.emit()
-        if compared != self.comparing:
-            self.comparing_changed.emit(self.comparing)
-            self.whole_width_wanted.emit(self.wants_whole_width)
+        self.comparing_changed.emit(self.comparing)
+        self.whole_width_wanted.emit(self.wants_whole_width)
 
     def _toggle_hand(self, on: bool) -> None:
         self.voids.setVisible(on)
@@ -281,7 +227,7 @@ class StagePanel(Card):
 
     def set_editable(self, editable: bool) -> None:
         """Whether there is a design that may be changed by hand now."""
-        self.hand.switch.setEnabled(editable and not self.showing_cuts)
+        self.hand.switch.setEnabled(editable)
 
     @property
     def showing_before(self) -> bool:
@@ -292,7 +238,6 @@ class StagePanel(Card):
         """Show another design; the angle stays, or starts at the target angle for the first one."""
         first = entry is not None and self.view.design is None and target != self._posed_for
         self._entry, self._target, self._name, self._sample = entry, target, name, None
-        self._place_welcome()
         self.tour.forget()
         self.deployment.set_ready(entry is not None)
         self._set_switches()
@@ -376,8 +321,8 @@ class StagePanel(Card):
         entry = self._entry
         self.show_title()
         self._show_ends()
-        if entry is None:  # while designs are on their way, the target that they are for
-            self.view.show_design(None, None, None if self._sample_allowed else self._target)
+        if entry is None:  # the target that designs are made for
+            self.view.show_design(None, None, self._target)
             return
         shown = self._sample or entry
         # Contacts and the second target's pose are known of the sheet that was scored; the one that was fitted for
@@ -396,12 +341,12 @@ class StagePanel(Card):
 
     def show_made(self, made: Planned | MadePieces | None) -> None:
         """Draw pieces and tiles of a design whose cuts are planned, and name them in the header."""
-        self.view.show_pieces(made.posed if isinstance(made, MadePieces) else None)
+        self.view.show_pieces(made.on_board if isinstance(made, MadePieces) else None)
         self.view.show_tiles(made.layers if isinstance(made, Planned) else None)
         self.show_title()
 
     def show_title(self) -> None:
-        """Show what the header says of the design or of its cuts."""
+        """Show what the header says of the design."""
         entry, name = self._entry, self._name
         alone = tr("Layout") if entry is None or not name else tr("Design {name}", name=name)
         self.title.setText(tr("Comparison") if self.comparing else alone)
@@ -411,8 +356,6 @@ class StagePanel(Card):
 
     def _texts(self) -> tuple[str, ...]:
         """What the header says, longest first."""
-        if self.showing_cuts:
-            return self.cuts.summary
         if self.comparing:
             return self.compare.summary
         sample = None if self._sample is None else self._sample.candidate
@@ -420,13 +363,9 @@ class StagePanel(Card):
 
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
-        optional = [] if self.showing_cuts else [self.toggles[overlay] for overlay, _, _ in reversed(OVERLAYS)]
-        switches = (
-            self.cuts.toggles.values()
-            if self.showing_cuts
-            else (self.before, self.hand, self.overlays_button, self.plots_switch)
-        )
-        buttons = [self.cuts_switch, self.trim, *switches, *optional, self.whole]
+        optional = [self.toggles[overlay] for overlay, _, _ in reversed(OVERLAYS)]
+        switches = (self.before, self.hand, self.overlays_button, self.plots_switch)
+        buttons = [self.trim, *switches, *optional, self.whole]
         used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
         room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
         for button in (self.whole, *optional):  # keys, menus and the double-click stay
@@ -556,24 +495,24 @@ class StagePresenter(QObject):
         """A run has begun: its target is shown, then the best design so far."""
         self._running = True
         self._panel.set_trimmable(False)
-        self._panel.show_run(self._session.document.target)
+        self._show_hint()
 
     def show_idle(self) -> None:
         """No run is in progress."""
         self._running = False
         self._panel.set_trimmable(True)
-        self._panel.show_idle()
         self._show_hint()
 
     def _show_hint(self) -> None:
         """Say what to do next while there is no design."""
+        set_hint, target = self._panel.view.set_hint, self._session.document.target
         if self._running:
-            return
-        if self._session.document.target is not None:
-            self._panel.set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
-            return
-        hint = tr("Draw a shape, open a file, or take a silhouette.")
-        self._panel.set_hint("target", tr("Start with a target"), hint)
+            set_hint("generate", tr("Generating …"), tr("The best design so far appears here."))
+        elif target is not None:
+            set_hint("generate", tr("Ready to design"), tr("Press Generate (Ctrl+G)."))
+        else:
+            set_hint("target", tr("Start with a target"), tr("Draw a shape, open a file, or take a silhouette."))
+        self._panel.show_target(target)
 
     def show_document(self) -> None:
         """The document has changed."""

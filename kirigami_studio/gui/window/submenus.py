@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QMenu, QWidget, QWidgetAction
 from kirigami_studio.foundation.words import languages, tr
 from kirigami_studio.gui.files.picturing import SCALES, PictureMaker
 from kirigami_studio.gui.files.recent_files import RecentFiles
+from kirigami_studio.gui.make.cuts_page import CutsPage
 from kirigami_studio.gui.target.target_panel import TargetPanel
 from kirigami_studio.gui.target.target_view import TargetView
 from kirigami_studio.gui.widgets.actions import CommandActions
@@ -158,10 +159,10 @@ class LanguageMenu(QMenu):
             chosen.setChecked(True)
 
 
-def offer_context_menus(target: TargetPanel, stage: StagePanel, commands: CommandActions) -> None:
-    """Give the views of target and stage their menus."""
+def offer_context_menus(target: TargetPanel, stage: StagePanel, cuts: CutsPage, commands: CommandActions) -> None:
+    """Give the views of target, stage and cuts their menus."""
     _offer(commands, stage.view, lambda: STAGE)
-    _offer(commands, stage.cuts.view, lambda: CUTS)
+    _offer(commands, cuts.view, lambda: CUTS)
     _offer(commands, target.view, lambda: BOARD if target.editing else TARGET)
 
 

@@ -1,4 +1,4 @@
-"""The page of the stage before there is a design: ways to begin, first steps, a question.
+"""Beside the drawing board: a sheet that moves, a question, ways to begin, finished pairs.
 
 The question is for machine and material; once it is answered, or declined, it is not asked again.
 """
@@ -25,8 +25,9 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.stage.deployment_bar import phi_at
 from kirigami_studio.gui.stage.layout_view import LayoutView
-from kirigami_studio.gui.widgets.card import ToolButton, muted_label
-from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
+from kirigami_studio.gui.widgets.card import Card, ToolButton
+from kirigami_studio.gui.widgets.layouts import column
+from kirigami_studio.gui.window.pairs import PairList
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.preferences import MotionPreference, TypedSize
@@ -56,38 +57,28 @@ LETTER_LANDS = frozenset(
 )
 #: Ways to begin: command, icon, words.
 OFFERS = (
-    ("edit_target", "edit", mark("Draw a shape")),
     ("open_target", "open", mark("Open a file")),
     ("library", "library", mark("Silhouettes")),
     ("sample", "project", mark("Finished heart")),
-    ("pairs", "swap", mark("Finished pairs")),
     ("recover", "reset", mark("Recover work")),
 )
-#: From a shape to a cut file.
-STEPS = (
-    mark("Choose a target: draw it (E), open a file (Ctrl+O), or take a silhouette (Ctrl+L). Type its size."),
-    mark("Choose the material, then Generate (Ctrl+G)."),
-    mark("Compare designs, best first (K). Click the one to keep."),
-    mark("Open the sheet with the slider, or play it (Space)."),
-    mark("Check the cuts in cutting order (C)."),
-    mark("Export the file for your machine, or a PDF to cut by hand (Ctrl+E)."),
-)
-#: Pixels of height that the sheet has at least.
-LEAST_VIEW = 140
+#: Pixels of height that the sheet has at least, and at most.
+LEAST_VIEW, MOST_VIEW = 100, 260
+#: Pixels of height from which on sheet and question have room below each other.
+TALL = 660
 
 
-class WelcomePage(QWidget):
+class WelcomePage(Card):
     """Shows a sheet that moves until the user does anything, and what can be done next."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__(tr("Begin"))
         self._phase = 0.0
         self._target = 0.0
         self._clock = QElapsedTimer()
         self._timer = QTimer(self)
         self._timer.setInterval(FRAME_MS)
         self._timer.timeout.connect(self._advance)
-        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         self.view = LayoutView()
         self.view.setObjectName("sampleView")
         self.view.setAccessibleName(tr("A sample sheet that opens and closes"))
@@ -96,30 +87,19 @@ class WelcomePage(QWidget):
         self.view.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.view.set_overlays(frozenset({Overlay.TARGET}))
         self.view.setMinimumHeight(LEAST_VIEW)
-        keeps = self.view.sizePolicy()
-        keeps.setRetainSizeWhenHidden(True)
-        self.view.setSizePolicy(keeps)
+        self.view.setMaximumHeight(MOST_VIEW)
         self.view.hide()
-        self.headline, self.hint = label(name="cardTitle"), muted_label()
-        self.guide = push_button(tr("Guide"), name="link")
         self.question = CuttingQuestion()
         self.question.hide()
         self.offers: dict[str, ToolButton] = {}
         self._grid = QGridLayout()
         self._grid.setSpacing(6)
-        self.steps = QWidget()
-        rows = QGridLayout(self.steps)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setColumnStretch(1, 1)
-        for place, step in enumerate(STEPS):
-            rows.addWidget(label(str(place + 1), name="number"), place, 0, Qt.AlignmentFlag.AlignTop)
-            rows.addWidget(label(tr(step), wraps=True), place, 1)
-        line = row((column(self.headline, self.hint, spacing=2), 1), column(self.guide, ...))
-        column((self.view, 1), line, self.question, self._grid, self.steps, on=self, spacing=8)
+        self.pairs = PairList()
+        self.body.addLayout(column((self.view, 2), self.question, self._grid, (self.pairs, 3), spacing=8))
 
     def offer(self, actions: Mapping[str, QAction]) -> None:
         """Offer ways to begin, by commands of the window."""
-        for name, icon, text in OFFERS:
+        for place, (name, icon, text) in enumerate(OFFERS):
             button = ToolButton(f"offer-{name}", icon, actions[name].toolTip())
             button.setProperty("offer", True)
             button.setText(tr(text))
@@ -128,30 +108,7 @@ class WelcomePage(QWidget):
             button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
             button.clicked.connect(actions[name].trigger)
             self.offers[name] = button
-        self.guide.setToolTip(actions["guide"].toolTip())
-        self.guide.clicked.connect(actions["guide"].trigger)
-        self._arrange()
-
-    def _arrange(self) -> None:
-        """Lay out offers in few rows, and the steps where the sheet keeps its height."""
-        widest = max((button.sizeHint().width() for button in self.offers.values()), default=1)
-        most = max(1, (self.width() + self._grid.spacing()) // (widest + self._grid.spacing()))
-        columns = next(count for count in (6, 3, 2, 1) if count <= most)
-        for place, button in enumerate(self.offers.values()):
-            self._grid.addWidget(button, *divmod(place, columns))
-        for place in range(len(OFFERS)):
-            self._grid.setColumnStretch(place, 1 if place < columns else 0)
-        layout = self.layout()
-        if layout is not None:
-            shown = self.steps.isVisibleTo(self)
-            least = layout.totalHeightForWidth(self.width())
-            if not shown:
-                least += self.steps.heightForWidth(self.width()) + layout.spacing()
-            self.steps.setVisible(least <= self.height())
-
-    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
-        super().resizeEvent(event)
-        self._arrange()
+            self._grid.addWidget(button, *divmod(place, 2))
 
     @property
     def ready(self) -> bool:
@@ -168,14 +125,13 @@ class WelcomePage(QWidget):
         self._target = design.phi_target
         self.view.show_design(design, None, target)
         self.view.set_phi(self._target)
-        self.view.show()
+        self._make_room()
         self._phase = 0.5
 
-    def say(self, headline: str, hint: str) -> None:
-        """Say what to do next."""
-        self.headline.setText(headline)
-        self.hint.setText(hint)
-        self._arrange()
+    def ask(self, on: bool) -> None:
+        """Show the question, or take it away."""
+        self.question.setVisible(on)
+        self._make_room()
 
     def start(self) -> None:
         """Open and close until the user does something in the window."""
@@ -196,6 +152,14 @@ class WelcomePage(QWidget):
         if event.type() in ACTS and isinstance(watched, QWidget) and watched.window() is self.window():
             self.stop()
         return False
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._make_room()
+
+    def _make_room(self) -> None:
+        """In a low window the question takes the place of the sheet."""
+        self.view.setVisible(self.ready and (self.question.isHidden() or self.height() >= TALL))
 
     def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt's name
         super().hideEvent(event)
@@ -219,10 +183,11 @@ class WelcomePresenter(QObject):
         """Read the sample and ask the question, if it was not asked before."""
         callbacks: JobCallbacks[Pair] = JobCallbacks(self._on_sample)
         self._session.queue.start(tr("reading the sample"), reading_sample, callbacks)
+        self._page.pairs.read(self._session.queue)
         if not self._preferences.present.machine_asked:
             question = self._page.question
             question.offer()
-            question.show()
+            self._page.ask(True)
 
     def _on_sample(self, sample: Pair) -> None:
         self._page.show_sample(sample.design, sample.target)
@@ -250,7 +215,7 @@ class WelcomePresenter(QObject):
             session.apply(Edit(tr("Change the material"), changed))
         else:  # nothing was done yet: this is how it starts
             session.restart(changed, session.path)
-        self._page.question.hide()
+        self._page.ask(False)
         begin = tr("Cutting {material}. Press Generate (Ctrl+G).", material=tr(known.name))
         note = note_before_run(cut)
         session.set_status(begin if note is None else note.text)
@@ -259,7 +224,7 @@ class WelcomePresenter(QObject):
         """Do not ask again."""
         preferences = self._preferences
         preferences.keep(replace(preferences.present, machine_asked=True))
-        self._page.question.hide()
+        self._page.ask(False)
 
     def switch_motion(self) -> None:
         """Let what moves by itself stand still, or move again."""

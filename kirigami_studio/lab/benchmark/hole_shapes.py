@@ -44,7 +44,7 @@ def _ring(share: float) -> BaseGeometry:
 
 
 def _arc(x: float, y: float, across: float, up: float, first: float, last: float) -> FloatArray:
-    """Points (49, 2) of an arc about (x, y) with half axes ``across`` and ``up``, from and to angles in degrees."""
+    """Points (49, 2) of an arc about (x, y) with two half axes, between angles in degrees."""
     angle = np.radians(np.linspace(first, last, 49))
     return np.stack([x + across * np.cos(angle), y + up * np.sin(angle)], axis=1)
 
@@ -82,9 +82,8 @@ def _stroked(strokes: list[FloatArray]) -> BaseGeometry:
 
 
 def _gear() -> BaseGeometry:
-    teeth = [
-        rotate(Polygon([(0.8, -0.14), (1.0, -0.09), (1.0, 0.09), (0.8, 0.14)]), 36.0 * k, (0, 0)) for k in range(10)
-    ]
+    tooth = Polygon([(0.8, -0.14), (1.0, -0.09), (1.0, 0.09), (0.8, 0.14)])
+    teeth = [rotate(tooth, 36.0 * number, (0, 0)) for number in range(10)]
     return shapely.union_all([_disc(0.82), *teeth]).difference(_disc(0.32))
 
 

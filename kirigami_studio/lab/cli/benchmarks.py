@@ -24,6 +24,7 @@ import numpy.typing as npt
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
 from kirigami_studio.cli.inputs import read_targets
 from kirigami_studio.cli.option_types import parse_grid, parse_grid_or_auto, workers
+from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.foundation.errors import ExportError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import write_atomically
@@ -31,6 +32,8 @@ from kirigami_studio.foundation.processes import Workers
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load, solid_names
 from kirigami_studio.outlines.starts import start_shape
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import new_settings
 
 if TYPE_CHECKING:
     from kirigami_studio.lab.benchmark.best_of_k_suite import BestOfKFigures
@@ -533,26 +536,37 @@ def starts(arguments: argparse.Namespace) -> int:
     return 0 if all(one.ok for one in fields) else 1
 
 
+def holes(arguments: argparse.Namespace) -> int:
+    """Targets with holes, designed and cut; 1 for a hole that is closed or a sheet in pieces."""
+    from kirigami_studio.lab.benchmark.holes_suite import design_holes, hole_figures, hole_sentences
+
+    line = ProgressLine()
+    shown = _shown_on(line, "Designs")
+    each = design_holes(arguments.shapes, arguments.k, arguments.seed, arguments.width_mm, shown)
+    _print_figures(arguments, line, hole_figures(each), hole_sentences(each))
+    return 0 if all(one.pieces == 1 and not one.closed_holes for one in each) else 1
+
+
 def pinned(arguments: argparse.Namespace) -> int:
-    """Targets designed for two layers of panels on pins; 1 when pins of one come too near."""
+    """Targets designed for two layers of panels on pins; 1 when the pieces of one cannot be put together."""
     from kirigami_studio.lab.benchmark.pinned_suite import design_pinned
 
     line = ProgressLine()
     named = solid_names() if arguments.targets == ["library"] else arguments.targets
+    grid = parse_grid_or_auto(arguments.grid)
+    chosen: dict[str, Any] = {} if grid is None else {"grid": grid, "auto_grid": False}
+    cut = {"material": arguments.material, "construction": Construction.PINNED, "width_mm": arguments.width_mm}
     found = design_pinned(
         [target.read() for target in read_targets(list(named))],
-        parse_grid_or_auto(arguments.grid),
-        arguments.k,
-        arguments.polish,
-        arguments.seed,
-        width_mm=arguments.width_mm,
+        new_settings(cut),
+        DesignSettings(k=arguments.k, polish=arguments.polish, seed=arguments.seed, **chosen),
         gap_mm=arguments.gap_mm,
         starts=[start_shape(name) for name in arguments.starts],
         report=_shown_on(line, "Designs"),
     )
     figures = {**found.figures(), "each": [asdict(one) for one in found.each]}
     _print_figures(arguments, line, figures, found.sentences())
-    return 0 if all(one.kept for one in found.each) else 1
+    return 0 if found.ok else 1
 
 
 def as_cut(arguments: argparse.Namespace) -> int:

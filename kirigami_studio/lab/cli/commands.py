@@ -376,12 +376,20 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="shapes of the flat sheet, as for 'design --start' (default: rectangle)"),
         option("--grid", default="auto", help="voids, ROWSxCOLUMNS or auto (default auto)"),
         option("--width-mm", type=float, default=240.0, help="width of the flat sheet (default 240)"),
-        option("--gap-mm", type=float, default=9.8, help="least distance of pins (default 9.8)"),
+        option("--material", default="plywood-co2", help="material of both layers (default plywood-co2)"),
+        option("--gap-mm", type=float, default=None,
+               help="least distance of pins (default: what their ears and necks need)"),
         samples(32),
         option("--polish", type=whole, default=15, help="polishing steps (default 15)"),
         SEED, *FIGURES,
     ), ("kirigami-studio benchmark pinned --targets library",
         "kirigami-studio benchmark pinned --starts circle --targets square star")),
+    SubCommand("benchmark holes", "design drawn targets with holes and cut them in film", "lab.cli.benchmarks:holes", (
+        option("--shapes", nargs="+", default=[], metavar="NAME",
+               help="some of them by name, as 'A' or 'ring 55 %%' (default: all)"),
+        option("--width-mm", type=float, default=160.0, help="width of the flat sheet (default 160)"),
+        samples(32), SEED, *FIGURES,
+    ), ("kirigami-studio benchmark holes", "kirigami-studio benchmark holes --shapes A O gear --k 8")),
     SubCommand("benchmark solvers", "compare the paper's solvers with fits and samples (its Table 1)",
                "lab.cli.benchmarks:solvers", (
         *targets_of_a_suite(20), EXACT, GRID, SEEDS,
@@ -482,8 +490,11 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--materials", nargs="+", default=[], metavar="KEY", help="of bundled materials (default: all)"),
         option("--shapes", nargs="+", default=[], metavar="NAME",
                help="silhouettes of the library (default: hexagon house heart star letter-l gear)"),
+        option("--runs", metavar="FILE", help="keep finished runs there, and do not do again what it has"),
+        option("--into", metavar="FILE", help="write the table into this Markdown file, in the place marked for it"),
         samples(32), SEED, *FIGURES,
-    ), ("kirigami-studio benchmark presets --materials card-co2 --k 8",)),
+    ), ("kirigami-studio benchmark presets --materials card-co2 --k 8",
+        "kirigami-studio benchmark presets --k 4 --runs runs/presets.jsonl --into docs/materials.md")),
 )  # fmt: skip
 
 #: Groups of sub-commands, and what each is for.

@@ -97,8 +97,8 @@ class BoardStates(OffscreenSession):
         target, reshaping = self.window.target, self.window.presenters.target.reshaping
         body = figure(Figure.ELLIPSE, BoundingBox(-40.0, -25.0, 20.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: Placed.from_ring(body, "ladle")))
-        arm, now = figure(Figure.RECTANGLE, BoundingBox(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
-        reshaping.take(Change("Add rectangle", lambda: combined(now, arm, Combine.ADD, "rectangle")))
+        arm, now = placed_figure(Figure.RECTANGLE, BoundingBox(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
+        reshaping.take(Change("Add rectangle", lambda: combined(now, arm, Combine.ADD)))
         for tool in (Tool.POINTS, Tool.POSE, Tool.STAR, Tool.TEXT):
             target.set_tool(tool)
             target.tools.set_mode(Combine.ADD)
@@ -181,10 +181,10 @@ class BoardStates(OffscreenSession):
         self.picture("start-menu", tile.menu)
         tile.menu.close()
         window.dialogs.show_start_board()
-        window.dialogs.show_pairs()
-        board, gallery = window.dialogs.start_board, window.dialogs.pairs
-        if board is None or gallery is None:
-            raise SessionError("The board or the pairs did not open.")
+        window.presenters.show_pairs()
+        board, gallery = window.dialogs.start_board, window.welcome.pairs
+        if board is None:
+            raise SessionError("The board did not open.")
         board.view.context.changed.emit(Change("Draw polygon", lambda: Placed.from_ring(HOLLOW, "polygon")))
         for palette in (DARK, LIGHT):
             window.appearance.set_theme(palette)

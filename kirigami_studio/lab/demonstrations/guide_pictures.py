@@ -16,9 +16,9 @@ from PySide6.QtCore import QPoint, QRect, QSize
 from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.gui.make.fabrication_panel import Extent
 from kirigami_studio.gui.target.target_view import Tool
-from kirigami_studio.lab.demonstrations.offscreen_session import GUIDE_WIDTH, OffscreenSession, click, main
+from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.lab.demonstrations.offscreen_session import GUIDE_WIDTH, OffscreenSession, main
 
 #: Colours of a picture: the window has few, and smooth edges need the rest.
 COLOURS = 96
@@ -35,12 +35,13 @@ class GuidePictures(OffscreenSession):
         window.resize(SIZE)
         window.show()
         services.targeting.start_with("heart")
+        window.pages.turn(Page.SHAPE)
         window.presenters.welcome.begin()
-        page = window.stage.welcome
+        page = window.welcome
         self.until(lambda: page.ready and self._target_name() == "heart", "the sample did not come")
         page.stop()
         page.view.set_phi(math.radians(100.0))
-        self.take("start", window.stage)
+        self.take("start", window.target, window.welcome)
         window.presenters.welcome.decline()
         window.target.set_tool(Tool.POLYGON)
         self.settle()
@@ -55,11 +56,8 @@ class GuidePictures(OffscreenSession):
         window.stage.deployment.set_phi(math.radians(60.0))
         self.take("opening", window.stage)
         window.stage.deployment.set_phi(0.0)
-        click(window.stage.cuts_switch)
-        self.take("cuts", window.stage)
-        click(window.stage.cuts_switch)
-        while window.fabrication.extent is not Extent.ALL:
-            click(window.fabrication.fold)
+        window.commands["cuts"].trigger()
+        self.take("cuts", window.cuts)
         self.take("fabrication", window.fabrication)
         services.session.history.mark_saved()
         window.close()

@@ -29,6 +29,8 @@ from kirigami_studio.gui.window.main_window import FIRST, MainWindow
 DESIGNS = 8
 #: Timeout of a step in seconds; the first run loads the generator.
 PATIENCE = 180.0
+#: Width of the pairs in three columns, pixels.
+PAIRS_WIDTH = 850
 #: Width of the guide's text, pixels.
 GUIDE_WIDTH = 620
 
@@ -182,10 +184,10 @@ class PairPictures(OffscreenSession):
 
     def play(self) -> list[Path]:
         """Save it as large as it is drawn, and as wide as the guide's text."""
+        self.window.show()
         self.window.commands["pairs"].trigger()
-        gallery = self.window.dialogs.pairs
-        if gallery is None:
-            raise SessionError("The examples did not open.")
+        gallery = self.window.welcome.pairs
+        gallery.list.setFixedWidth(PAIRS_WIDTH)
         self.until(lambda: gallery.complete, "the examples were not drawn")
         gallery.list.clearSelection()
         used = gallery.list.visualItemRect(gallery.list.item(gallery.list.count() - 1)).bottom()
@@ -204,7 +206,6 @@ class PairPictures(OffscreenSession):
             path = self.out / f"{name}.png"
             image.quantize(colours).save(path, optimize=True)
             self.files.append(path)
-        self.window.dialogs.close()
         self.window.close()
         return self.files
 

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.export.dxf_reading import DxfContent, read_content
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.lab.demonstrations.offscreen_session import (
     DESIGNS,
     OffscreenSession,
@@ -102,7 +103,7 @@ class Screencast(OffscreenSession):
         window = self.window
         window.show()
         window.presenters.welcome.begin()  # reads the sample that moves
-        self.until(lambda: window.stage.welcome.ready, "the sample did not come")
+        self.until(lambda: window.welcome.ready, "the sample did not come")
         window.presenters.welcome.decline()
         self.say("Kirigami Studio: from a silhouette to a cut file, in two minutes")
         self.live(6.0)
@@ -145,12 +146,14 @@ class Screencast(OffscreenSession):
         self.press_on(width)
         width.setValue(HEART_MM)
         self.hold(1.6)
+        self.turn(Page.MAKE)
         material = self.window.fabrication.material
         self.go_to(material)
         material.showPopup()
         self.hold(3.2)
         material.hidePopup()
         self.hold(0.6)
+        self.turn(Page.DESIGN)
 
     def generate_designs(self) -> None:
         """Eight designs, while they come and are fitted."""
@@ -192,11 +195,10 @@ class Screencast(OffscreenSession):
 
     def connectors(self) -> None:
         """The cuts, one wider connector, and the order of cutting."""
-        stage = self.window.stage
         self.say("6   The cuts: every line is cut once, every dot is a connector")
-        self.press_on(stage.cuts_switch)
+        self.turn(Page.MAKE)
         self.hold(3.0)
-        page = stage.cuts
+        page = self.window.cuts
         transform = page.view.transform()
         if transform is None or page.view.gestures.connectors is None:
             raise SessionError("The cuts were not shown.")
@@ -221,7 +223,10 @@ class Screencast(OffscreenSession):
             self.pointer = self.place_of(slider, QPoint(round(share * slider.width()), slider.height() // 2))
             self.shoot(1.0 / FRAMES_A_SECOND)
         self.hold(1.0)
-        self.press_on(stage.cuts_switch)
+
+    def turn(self, page: Page) -> None:
+        """Press a page's button in the bar on top."""
+        self.press_on(self.window.page_buttons[page])
 
     def export_file(self) -> None:
         """The file and the report on it."""

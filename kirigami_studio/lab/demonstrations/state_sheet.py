@@ -17,6 +17,7 @@ from PIL import Image, ImageDraw, ImageFont
 from PySide6.QtCore import QEvent, QPoint, Qt
 from PySide6.QtWidgets import QApplication
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.cards import CardButton
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
 from kirigami_studio.gui.make.cut_view import CutOverlay
@@ -26,6 +27,7 @@ from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
 from kirigami_studio.gui.window.application import create_window
+from kirigami_studio.gui.window.pages import Page
 from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
 from kirigami_studio.lab.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
 from kirigami_studio.project import recovery
@@ -153,7 +155,7 @@ class StateSheet(BoardStates):
 
     def welcome(self) -> None:
         """The welcome page with the question for machine and material, and without it."""
-        presenter, page = self.window.presenters.welcome, self.window.stage.welcome
+        presenter, page = self.window.presenters.welcome, self.window.welcome
         presenter.begin()
         self.until(lambda: page.ready, "the sample was not read")
         page.stop()
@@ -172,9 +174,9 @@ class StateSheet(BoardStates):
         window.files.open_sample()
         self.until(window.fabrication.export.isEnabled, "the sample was not opened")
         self.all_sizes("german-designs")
-        window.stage.cuts_switch.click()
+        window.commands["cuts"].trigger()
         self.all_sizes("german-cuts")
-        window.stage.cuts_switch.click()
+        window.commands["cuts"].trigger()
         window.target.set_editing(True)
         self.all_sizes("german-board")
         window.target.set_editing(False)
@@ -197,7 +199,8 @@ class StateSheet(BoardStates):
         window.settings.search.setChecked(True)
         window.settings.candidates.setValue(DESIGNS)
         click(window.run.generate)
-        self.until(lambda: window.status_text.text().startswith("Polished"), "no design was polished")
+        model = window.gallery.view.model_
+        self.until(lambda: any(one.candidate.polished for one in model.entries), "no design was polished")
         self.all_sizes("polishing")
         self.until(lambda: not window.services.run.running, "the run did not end")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
@@ -336,9 +339,9 @@ class StateSheet(BoardStates):
             raise SessionError("The design was not trimmed.")
         self.until(self._planned, "no trimmed cut plan was made")
         self.all_sizes("trimmed")
-        click(stage.cuts_switch)
+        self.window.commands["cuts"].trigger()
         self.all_sizes("trimmed-cuts")
-        click(stage.cuts_switch)
+        self.window.commands["cuts"].trigger()
         stage.deployment.set_phi(math.radians(60.0))
         self.all_sizes("trimmed-half-open")
         stage.deployment.set_phi(math.pi)
@@ -350,6 +353,7 @@ class StateSheet(BoardStates):
     def by_hand(self) -> None:
         """Hand editing, with locked voids and a label at the pointer."""
         window, view, services = self.window, self.window.stage.view, self.window.services
+        before = window.session.history.position
         click(window.stage.hand)
         services.hand.lock(frozenset((row, column) for row in (2, 3) for column in (3, 4, 5)), True)
         for name, degrees in (("half-open", 70.0), ("flat", 180.0), ("target", 0.0)):
@@ -367,7 +371,7 @@ class StateSheet(BoardStates):
         services.hand.nudge(frozenset({(5, 5)}), 0.3)
         self.until(lambda: not services.hand.busy, "the changed ratio was not scored")
         self.all_sizes("by-hand-changed")
-        while window.session.history.undo_label is not None and "void" in window.session.history.undo_label:
+        while window.session.history.position > before:
             window.commands["undo"].trigger()
         click(window.stage.hand)
 
@@ -375,9 +379,10 @@ class StateSheet(BoardStates):
         """The cut plan: whole, half cut with its travel, with connectors of their own and a problem, with options and
         the name engraved.
         """
-        stage, fabrication = self.window.stage, self.window.fabrication
-        page, history = stage.cuts, self.window.session.history
-        click(stage.cuts_switch)
+        fabrication = self.window.fabrication
+        page, history = self.window.cuts, self.window.session.history
+        before = history.position
+        self.window.commands["cuts"].trigger()
         self.all_sizes("cuts")
         click(page.toggles[CutOverlay.TRAVEL])
         page.bar.slider.setValue(page.bar.slider.maximum() // 2)
@@ -390,22 +395,20 @@ class StateSheet(BoardStates):
         self.all_sizes("cuts-connectors")
         page.problems.setCurrentRow(0)
         self.all_sizes("cuts-problem")
-        stage.fit()
-        while history.undo_label is not None and "connectors" in history.undo_label:
+        page.view.fit()
+        while history.position > before:
             self.window.commands["undo"].trigger()
         self.until(lambda: not page.problems.isVisible(), "undo did not bring the connectors back")
         page.view.gestures.select(frozenset())
-        click(stage.cuts_switch)
-        fabrication.options.fold.setChecked(True)
+        self.window.commands["cuts"].trigger()
+        self.window.pages.turn(Page.MAKE)
         self.all_sizes("options")
         click(fabrication.options.engrave)
         self.until(lambda: page.view.shows_name, "the name was not engraved")
-        click(stage.cuts_switch)
         self.all_sizes("cuts-name")
-        click(stage.cuts_switch)
         self.window.commands["undo"].trigger()
         self.until(lambda: not page.view.shows_name, "undo did not take the name off")
-        fabrication.options.fold.setChecked(False)
+        self.window.pages.turn(Page.DESIGN)
 
     def exported(self) -> None:
         """The report of a cut file and the material editor, in both themes."""
@@ -425,7 +428,7 @@ class StateSheet(BoardStates):
             self.window.messages.close_message()
 
     def _planned(self) -> bool:
-        return "trimmed" in self.window.fabrication.summary.text()
+        return bool(self.window.fabrication.summary.text())
 
     def project(self) -> None:
         """Recovered work, the submenus of files and pictures, the history with undone steps."""
@@ -435,9 +438,10 @@ class StateSheet(BoardStates):
         note = RecoveryNote("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00")
         recovery.keep(window.session.document, note, left)
         filing.recovery.use(folder)
-        self.until(lambda: "quit unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")
+        bar, discard = window.messages, tr("Discard")
+        self.until(lambda: any(discard in dict(one.actions) for one in bar.messages), "the lost work was not offered")
         self.all_sizes("recovery")
-        dict(window.messages.messages[-1].actions)["Discard"]()
+        dict(bar.messages[-1].actions)[discard]()
         while window.messages.messages:
             window.messages.close_message()
         for name in ("teapot.kiri", "session.kiri"):

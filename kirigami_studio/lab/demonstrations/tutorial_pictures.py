@@ -42,7 +42,13 @@ HEART_MM = 80.0
 PRESET, AUTHOR, GAPS = "card-co2", "Ada", "1.21 1.18 1.24"
 #: Pixels of a millimetre in the picture of the coupon, and around it.
 COUPON_SCALE, COUPON_MARGIN = 13.0, 16
-INKS = {Layer.SLITS: "#2f6fb5", Layer.EDGE_SLITS: "#00805f", Layer.OUTLINE: "#1d2733", Layer.RELIEF: "#c2410c"}
+INKS = {
+    Layer.SLITS: "#2f6fb5",
+    Layer.EDGE_SLITS: "#00805f",
+    Layer.HOLES: "#1d2733",
+    Layer.OUTLINE: "#1d2733",
+    Layer.RELIEF: "#c2410c",
+}
 
 
 class TutorialPictures(OffscreenSession):
@@ -79,9 +85,9 @@ class TutorialPictures(OffscreenSession):
         window.stage.deployment.set_phi(math.radians(75.0))
         self.shrunk("half-open", window.stage)
         window.stage.deployment.set_phi(0.0)
-        click(window.stage.cuts_switch)
-        self.shrunk("cuts", window.stage)
-        click(window.stage.cuts_switch)
+        window.commands["cuts"].trigger()
+        self.shrunk("cuts", window.cuts)
+        window.commands["cuts"].trigger()
         window.services.exporter.export(CUT_FILE)
         self.until(lambda: window.dialogs.report is not None, "no report was shown")
         if window.dialogs.report is not None:

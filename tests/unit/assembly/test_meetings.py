@@ -30,7 +30,7 @@ def places(plan: PinnedPlan, pieces: tuple[str, str], at: tuple[np.ndarray, np.n
 
 
 def test_that_meetings_lie_on_both_edges_in_their_state_and_nowhere_else(plan: PinnedPlan) -> None:
-    found = meetings(plan)
+    found = meetings(plan.assembly, plan.options.side_mm)
     assert {one.state for one in found} == set(HeldState)
     assert [one.length_mm for one in found] == sorted((one.length_mm for one in found), reverse=True)
     for one in found:
@@ -49,7 +49,7 @@ def test_that_meetings_lie_on_both_edges_in_their_state_and_nowhere_else(plan: P
 
 def test_that_voids_that_stay_open_at_the_target_have_no_meetings_there() -> None:
     half_open = pinned(*pinwheel(3, 3, phi=1.2), 140.0)
-    assert {one.state for one in meetings(half_open)} == {HeldState.FLAT}
+    assert {one.state for one in meetings(half_open.assembly, half_open.options.side_mm)} == {HeldState.FLAT}
 
 
 @pytest.mark.parametrize("state", HeldState)

@@ -79,12 +79,12 @@ def test_that_swept_discs_contain_every_disc_and_little_more(turn: float, drift:
 def test_that_swept_hulls_grown_by_their_tolerance_contain_the_polygon_on_its_way() -> None:
     corners, tolerance = np.array([[0.0, 4.0 - 6.0j, 9.0 + 2.0j, 3.0 + 5.0j]]), 0.08
     drift, turn = np.array([21.0 - 13.0j]), -3.0
-    hulls = swept_hulls(corners, drift[:, None], turn, tolerance, (-1e3, -1e3, 1e3, 1e3))
+    hulls = swept_hulls(corners, drift[:, None], turn, tolerance, np.array([[-1e3, -1e3, 1e3, 1e3]]))
     area = shapely.union_all(hulls).buffer(tolerance)
     for share in np.random.default_rng(2).uniform(0.0, 1.0, 200):
         there = corners[0] + (np.exp(1j * turn * share) - 1.0) * drift[0]
         assert area.covers(shapely.Polygon(as_points(there)))
-    near = swept_hulls(corners, drift[:, None], turn, tolerance, (0.0, 0.0, 5.0, 5.0))
+    near = swept_hulls(corners, drift[:, None], turn, tolerance, np.array([[0.0, 0.0, 5.0, 5.0]]))
     assert 0 < len(near) < len(hulls)
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,10 +16,13 @@ from kirigami_studio.assembly.motion import LayerMotion
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Piece, RoundHole
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
+from kirigami_studio.assembly.rim_pieces import shortest_links
+from kirigami_studio.assembly.shaping import Shaping, less
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.outline import Outline
 from tests.unit.assembly.pinned_designs import bodies_at, overlap_at, pinwheel
 
+DATA = Path(__file__).resolve().parents[2] / "data"
 WIDTH_MM = 150.0
 #: Of designs of 3 x 3 voids.
 SMALL_MM = 120.0
@@ -238,3 +243,39 @@ def test_that_pins_without_a_wall_are_left_out_and_the_pieces_are_sound_then(mon
     assert report.problems == () and report.figures.wall_mm > options.asked_wall_mm - 0.02
     monkeypatch.setattr(LayerMotion, "without", lambda motion, nodes: motion)
     assert [one.code for one in check_pinned(pinned(*design, 130.0, options), 5).problems] == ["pinned.neck_too_narrow"]
+
+
+def test_that_necks_between_pins_outside_of_an_outline_stay_in_the_piece_and_near_the_outline() -> None:
+    # A U whose arms end in pins; the outline takes the upper half of both.
+    body = shapely.box(0, 0, 40, 30).difference(shapely.box(8, -1, 32, 20))
+    inside, pins = shapely.box(-10, 16, 50, 40), np.array([[4.0, 4.0], [36.0, 4.0]])
+    links = shortest_links(body, pins, inside, 1.0)
+    assert body.buffer(1e-9).covers(links) and links.geom_type == "Polygon"
+    assert all(links.contains(shapely.Point(pin)) for pin in pins)
+    held = links.union(body.intersection(inside)).buffer(-0.99)
+    assert held.geom_type == "Polygon" and held.contains(shapely.Point(20, 25))
+    assert links.difference(inside).area < 2.0 * 2.2 * 14.0
+    assert shortest_links(body, np.array([[20.0, 5.0], [36.0, 4.0]]), inside, 1.0).is_empty
+
+
+def test_that_extensions_of_both_end_states_keep_clear_of_ears_far_from_their_panel() -> None:
+    design, _ = pinwheel(3, 3)
+    options = PinOptions(ear_mm=6.0, pin_mm=2.0, neck_mm=2.0)
+    shaping = Shaping.of(design.deployment, 40.0, 0.0, options)
+    motion, radius = shaping.motion, 0.5 * options.ear_mm + options.clearance_mm
+    seen, looked_at = 0, 0
+    for one, other in shaping.pairs.tolist():
+        panel = shapely.Polygon(np.column_stack([motion.corners[other].real, motion.corners[other].imag]))
+        for corner in np.flatnonzero(motion.hinged[one] & ~np.isin(motion.nodes[one], motion.nodes[other])):
+            ear = shapely.Point(motion.corners[one, corner].real, motion.corners[one, corner].imag).buffer(0.5 * radius)
+            if panel.distance(ear) < 2.0 * options.reach_mm and looked_at < 60:
+                looked_at += 1
+                seen += shaping.blocked(other, ear).buffer(1e-6).covers(ear)
+    assert seen == looked_at > 20
+
+
+def test_that_gaps_are_known_where_floating_point_gets_what_is_left_of_them_wrong() -> None:
+    known = json.loads((DATA / "making" / "gaps_less_extension.json").read_text())
+    gaps, extension = (shapely.from_wkb(known[name]) for name in ("gaps", "extension"))
+    left = less(gaps, extension)  # which only touches them
+    assert left.is_valid and left.area == pytest.approx(gaps.area, abs=1e-3)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 from command_line import refusal
+from PIL import Image, ImageDraw
+from shapely.geometry import Polygon
 
 from kirigami_studio.cli import main
 
@@ -107,3 +109,40 @@ def test_that_holes_are_kept_filled_or_opened_as_asked(capsys, tmp_path, sheet) 
         ("thin", "--fill-holes"): (0, True),
         ("thin", "--no-fill-holes"): (1, False),
     }
+
+
+@pytest.fixture
+def photo(tmp_path: Path) -> Path:
+    """A dark disc, and a red bar of which half is yellow, on a table."""
+    image = Image.new("RGB", (480, 240), (225, 220, 210))
+    draw = ImageDraw.Draw(image)
+    draw.ellipse((30, 30, 210, 210), fill=(40, 45, 60))
+    draw.rectangle((280, 80, 359, 159), fill=(200, 40, 40))
+    draw.rectangle((360, 80, 439, 159), fill=(250, 210, 60))
+    image.save(tmp_path / "photo.jpg", quality=95)
+    return tmp_path / "photo.jpg"
+
+
+def designed(capsys: pytest.CaptureFixture[str], photo: Path, *words: str) -> tuple[Polygon, list[str]]:
+    """The target of a design of a picture, and the warnings."""
+    assert main(["design", str(photo), *words, "--k", "1", "--grid", "4x4", "--no-polish", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    return Polygon(told["target_outline"][0]), told["warnings"]
+
+
+def test_that_a_design_is_of_the_object_at_a_place(capsys, photo) -> None:
+    def is_box(shape: Polygon, across: float, down: float) -> bool:
+        left, bottom, right, top = shape.bounds
+        return (right - left) / (top - bottom) == pytest.approx(across / down, rel=0.05) and shape.area > 0.96 * (
+            (right - left) * (top - bottom)
+        )
+
+    disc, said = designed(capsys, photo)
+    assert not is_box(disc, 1, 1) and any("--object X,Y" in note for note in said)
+    square, said = designed(capsys, photo, "--object", "320,120")
+    assert is_box(square, 1, 1) and not any("--object X,Y" in note for note in said)
+    assert is_box(designed(capsys, photo, "--object", "320,120", "--object", "400,120")[0], 2, 1)
+    both = ("--object", "320,120", "--object", "400,120", "--not-object", "420,100")
+    assert is_box(designed(capsys, photo, *both)[0], 1, 1)
+    code, sentence = refusal(capsys, "design", photo, "--object", "999,5", "--k", "1", "--json")
+    assert code == 1 and "999" in sentence

@@ -18,6 +18,7 @@ from piece_reader import put_together
 from pinned_assemblies import CLEARANCE_MM, EAR_MM, HOLE_MM, small_assembly
 from pypdf import PdfReader
 from shapely.geometry import Polygon
+from solid_reader import read_3mf, read_stl
 
 from kirigami_studio.assembly.driving import driven
 from kirigami_studio.assembly.holding import held, with_places
@@ -371,6 +372,13 @@ def test_that_board_and_arms_are_files_pieces_and_parts_of_the_folder(kind: Driv
     circles = sum(entity.dxftype() == "CIRCLE" for entity in cut)
     assert circles == sum(len(piece.holes) for piece in parts_of_drive)
     assert len(cut) - circles == len(of_drive) + sum(len(piece.openings) for piece in parts_of_drive)
+    solids = read_3mf(tmp_path / "moved/board.3mf")
+    assert set(solids) == of_drive and all(body.closed for body in solids.values())
+    for piece in parts_of_drive:
+        rounds = sum(0.25 * np.pi * hole.diameter_mm**2 for hole in piece.holes)
+        area = Polygon(piece.outline, piece.openings).area - rounds
+        assert solids[piece.id].volume == pytest.approx(area * PLYWOOD.thickness_mm, rel=1e-3)
+    assert read_stl(tmp_path / "moved/board.stl").volume == pytest.approx(sum(one.volume for one in solids.values()))
     with (tmp_path / "moved/parts.csv").open(newline="", encoding="utf-8") as table:
         rows = list(csv.DictReader(table))
     assert {row["item"] for row in rows} >= {"spacers", "screws", "servo" if kind is DriveKind.SERVO else "square bar"}

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from ezdxf.acis import api as acis_api
+from ezdxf.acis import entities as acis
+from ezdxf.math import Vec3
 from ezdxf.render import MeshBuilder
 from ezdxf.xclip import XClip
 from shapely.geometry import LineString, Point
 
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines import silhouettes
+from kirigami_studio.outlines.dxf_regions import EllipseCurve
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read_dxf import dxf_parts, read_dxf
 from tests.refusals import refused
@@ -347,14 +351,161 @@ def test_that_an_outline_over_several_layers_or_colours_is_joined(key, dxf, iou)
     assert iou(read_dxf(dxf(draw)), box_outline(2, 1)) > 0.999
 
 
-def test_that_a_clipped_block_is_named(dxf) -> None:
+def test_that_the_plotters_pen_does_not_make_lines_broad(dxf, iou) -> None:
+    def draw(space, _drawing) -> None:
+        pen = {"lineweight": 70}
+        space.add_lwpolyline([(5, -2), (15, -2), (15, 2), (5, 2)], close=True, dxfattribs=pen)
+        space.add_line((0, 0), (5, 0), dxfattribs=pen)
+        space.add_line((15, 0), (20, 0), dxfattribs=pen)
+
+    path = dxf(draw)
+    assert iou(read_dxf(path), box_outline(10, 4)) > 0.999
+    assert dxf_parts(path).parts[0].pen.width == pytest.approx(0.7)
+
+
+def clipped(space, drawing) -> None:
+    """A block with a plate that is seen and a larger one that is clipped away, half a hatch, and lines that are cut."""
+    block = drawing.blocks.new("Plate")
+    block.add_lwpolyline(SQUARE, close=True)
+    block.add_lwpolyline([(x + 100, 10 * y) for x, y in SQUARE], close=True)
+    XClip(space.add_blockref("Plate", (50, 20), {"rotation": 90})).set_block_clipping_path([(-1, -1), (20, 20)])
+
+
+def clipped_inside_a_block(space, drawing) -> None:
+    outer = drawing.blocks.new("Outer")
+    clipped(outer, drawing)
+    space.add_blockref("Outer", (3, 4), {"xscale": -2, "yscale": 2})
+
+
+def clipped_fill(space, drawing) -> None:
+    block = drawing.blocks.new("Filled")
+    block.add_hatch().paths.add_polyline_path([(0, 0), (30, 0), (30, 10), (0, 10)])
+    XClip(space.add_blockref("Filled", (0, 0))).set_block_clipping_path([(0, 0), (10, 0), (10, 30), (0, 30)])
+
+
+@pytest.mark.parametrize("draw", [clipped, clipped_inside_a_block, clipped_fill])
+def test_that_of_a_clipped_block_only_what_is_seen_counts(draw, dxf, iou) -> None:
+    outline = read_dxf(dxf(draw))
+    assert iou(outline, box_outline(1, 1)) > 0.999
+    assert not outline.notes
+
+
+def test_that_a_contour_that_a_clip_cuts_is_open(dxf) -> None:
     def draw(space, drawing) -> None:
-        drawing.blocks.new("Plate").add_lwpolyline(PLATE, close=True)
+        drawing.blocks.new("Plate").add_lwpolyline(SQUARE, close=True)
+        XClip(space.add_blockref("Plate", (0, 0))).set_block_clipping_path([(-1, -1), (5, 20)])
+
+    with refused(TargetError, "source.not_usable") as caught:
+        read_dxf(dxf(draw))
+    assert caught.value.__cause__.code == "lines.open_at"
+
+
+def test_that_a_block_with_an_inverted_clip_is_named(dxf) -> None:
+    def draw(space, drawing) -> None:
+        drawing.blocks.new("Plate").add_lwpolyline(SQUARE, close=True)
         clip = XClip(space.add_blockref("Plate", (0, 0)))
-        clip.set_block_clipping_path([(0, 0), (50, 50)])
+        clip.set_block_clipping_path([(2, 2), (5, 5)])
+        clip.invert_clipping_path(ignore_acad_compatibility=True)
 
     notes = " ".join(read_dxf(dxf(draw)).notes)
     assert "XCLIP" in notes and "Plate" in notes
+
+
+class WrittenEllipse(EllipseCurve):
+    def write_data(self, exporter) -> None:
+        exporter.write_loc_vec3(self.centre)
+        exporter.write_dir_vec3(self.normal)
+        exporter.write_loc_vec3(self.major)
+        exporter.write_double(self.ratio)
+        super().write_data(exporter)
+
+
+def loop_of(edges) -> acis.Loop:
+    """A loop of edges (start, end, curve)."""
+    coedges = []
+    for start, end, curve in edges:
+        edge, coedge = acis.Edge(), acis.Coedge()
+        for name, place in (("start_vertex", start), ("end_vertex", end)):
+            vertex = acis.Vertex()
+            vertex.point, vertex.edge = acis.Point(), edge
+            vertex.point.location = Vec3(place)
+            setattr(edge, name, vertex)
+        edge.curve, edge.coedge, coedge.edge, coedge.sense = curve, coedge, edge, False
+        coedges.append(coedge)
+    loop = acis.Loop()
+    loop.set_coedges(coedges)
+    return loop
+
+
+def ellipse(centre, across: float, along: float) -> acis.Loop:
+    curve = WrittenEllipse()
+    curve.centre, curve.major, curve.ratio = Vec3(centre), Vec3(across, 0), along / across
+    start = curve.centre + curve.major
+    return loop_of([(start, start, curve)])
+
+
+def half_disc(radius: float) -> acis.Loop:
+    curve, straight = WrittenEllipse(), acis.StraightCurve()
+    curve.major = Vec3(radius, 0)
+    right, left = Vec3(radius, 0), Vec3(-radius, 0)
+    return loop_of([(right, left, curve), (left, right, straight)])
+
+
+def polygon(corners) -> acis.Loop:
+    pairs = zip(corners, [*corners[1:], corners[0]], strict=True)
+    return loop_of([(Vec3(start), Vec3(end), acis.StraightCurve()) for start, end in pairs])
+
+
+def region(loops, surface=None):
+    """A drawing with the region of some loops."""
+
+    def draw(space, _drawing) -> None:
+        body, lump, shell, face = acis.Body(), acis.Lump(), acis.Shell(), acis.Face()
+        face.surface, face.shell = surface or acis.Plane(), shell
+        for loop in reversed(loops):
+            loop.face, loop.next_loop, face.loop = face, face.loop, loop
+        shell.append_face(face)
+        lump.append_shell(shell)
+        body.append_lump(lump)
+        acis_api.export_dxf(space.add_region(), [body])
+
+    return draw
+
+
+@pytest.mark.parametrize(
+    ("loops", "expected"),
+    [
+        ([polygon([(0, 0), (30, 0), (30, 10), (0, 10)])], box_outline(3, 1)),
+        ([ellipse((5, 5), 20, 20)], DISC),
+        ([ellipse((5, 5), 20, 10)], Outline.from_points(DISC.points * (2, 1))),
+        ([half_disc(3)], Outline.from_points(DISC.points[DISC.points[:, 1] >= -1e-9])),
+    ],
+)
+def test_that_a_region_is_a_shape(loops, expected, dxf, iou) -> None:
+    outline = read_dxf(dxf(region(loops)))
+    assert iou(outline, expected) > 0.999
+
+
+def test_that_a_region_in_a_block_is_moved_with_it_and_keeps_its_hole(dxf) -> None:
+    def draw(space, drawing) -> None:
+        region([polygon(SQUARE), ellipse((5, 5), 2, 2)])(drawing.blocks.new("A"), drawing)
+        space.add_blockref("A", (100, 0), {"xscale": 2, "yscale": 2})
+
+    path = dxf(draw)
+    (part,) = dxf_parts(path).parts
+    assert part.bounds == pytest.approx((100, 0, 120, 20)) and len(read_dxf(path).holes) == 1
+    assert part.region.area == pytest.approx(400 - 16 * np.pi, rel=1e-3)
+
+
+def test_that_a_region_with_other_curves_is_named(dxf) -> None:
+    class Spline(acis.Curve):
+        type = "intcurve-curve"
+
+    def draw(space, drawing) -> None:
+        region([loop_of([(Vec3(), Vec3(), Spline())])])(space, drawing)
+        space.add_lwpolyline(SQUARE, close=True)
+
+    assert any("Regions" in note for note in read_dxf(dxf(draw)).notes)
 
 
 def test_that_an_outline_open_at_several_places_is_not_what_it_holds(dxf) -> None:

@@ -147,3 +147,51 @@ def test_that_a_locked_a_postscript_and_an_unpacking_file_are_refused(pdf, tmp_p
     bomb = zlib.compress(bytes(300_000_000), 1)
     (tmp_path / "bomb.pdf").write_bytes(whole.read_bytes() + b"9 0 obj stream\n" + bomb + b"\nendstream")
     assert cause(tmp_path / "bomb.pdf") == "pdf.unpacks"
+
+
+def layered(path: Path, marked: bool, on: bool) -> Path:
+    """A page with a small square, and a large one on a layer: by marks in the page, or as a form that is on it."""
+    import pypdf
+    from pypdf.generic import (
+        ArrayObject,
+        DecodedStreamObject,
+        DictionaryObject,
+        FloatObject,
+        NameObject,
+        TextStringObject,
+    )
+
+    writer = pypdf.PdfWriter()
+    page = writer.add_blank_page(300, 200)
+    layer = writer._add_object(
+        DictionaryObject({NameObject("/Type"): NameObject("/OCG"), NameObject("/Name"): TextStringObject("Guides")})
+    )
+    large, small = b"10 10 200 180 re f\n", b"250 50 30 30 re f\n"
+    form = DecodedStreamObject()
+    form.set_data(large)
+    form.update({
+        NameObject("/Type"): NameObject("/XObject"), NameObject("/Subtype"): NameObject("/Form"),
+        NameObject("/BBox"): ArrayObject([FloatObject(value) for value in (0, 0, 300, 200)]),
+        NameObject("/OC"): layer,
+    })  # fmt: skip
+    drawn = DecodedStreamObject()
+    drawn.set_data((b"/OC /L BDC\n" + large + b"EMC\n" if marked else b"/F Do\n") + small)
+    page[NameObject("/Contents")] = writer._add_object(drawn)
+    page[NameObject("/Resources")] = DictionaryObject({
+        NameObject("/Properties"): DictionaryObject({NameObject("/L"): layer}),
+        NameObject("/XObject"): DictionaryObject({NameObject("/F"): writer._add_object(form)}),
+    })  # fmt: skip
+    off = ArrayObject([] if on else [layer])
+    writer.root_object[NameObject("/OCProperties")] = DictionaryObject({
+        NameObject("/OCGs"): ArrayObject([layer]), NameObject("/D"): DictionaryObject({NameObject("/OFF"): off})
+    })  # fmt: skip
+    writer.write(path)
+    return path
+
+
+@pytest.mark.parametrize("marked", [True, False])
+@pytest.mark.parametrize(("on", "points"), [(True, (200, 180)), (False, (30, 30))])
+def test_that_layers_that_are_off_are_not_read(marked, on, points, tmp_path) -> None:
+    outline = read_target(layered(tmp_path / "layers.pdf", marked, on))
+    assert outline.size == pytest.approx(np.array(points) * 25.4 / 72, rel=1e-3)
+    assert any("Hidden layers" in note and "Guides" in note for note in outline.notes) is (marked and not on)

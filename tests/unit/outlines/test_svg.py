@@ -126,7 +126,10 @@ def test_that_the_size_follows_the_stated_units(attributes, size, unit, svg) -> 
         ('<image href="a.png" width="5" height="5"/><circle r="30"/>', "embedded picture"),
         ('<path d="M0 0L100 0L100 100L50 100L51 101L50 102L51 99L0 100z"/>', "at 2 places, the first near (50.6"),
         ('<circle r="30"/><rect width="90" height="5" fill="none" stroke="red"/>', "without filling"),
-        ('<circle r="30" clip-path="circle(9px)"/>', "Clip paths"),
+        ('<circle r="30" clip-path="path(\'M0 0H9V9z\')"/>', "Clip paths"),
+        ('<circle r="30" clip-path="circle(calc(9px))"/>', "Clip paths"),
+        ('<filter id="f"><feGaussianBlur stdDeviation="3"/></filter><circle r="30" filter="url(#f)"/>', "Filters"),
+        ('<circle r="30" style="filter:drop-shadow(3px 3px 2px red)"/>', "Filters"),
     ],
 )  # fmt: skip
 def test_that_what_was_changed_is_said(body, word, svg) -> None:

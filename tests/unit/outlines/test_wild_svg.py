@@ -78,6 +78,27 @@ def shown(svg, body: str, attributes: str = 'viewBox="0 0 100 100"') -> tuple[fl
          '<g clip-path="url(#c)" transform="translate(1 2)"><rect width="90" height="90"/></g>', (6, 7, 26, 17)),
         ('<clipPath id="c" clipPathUnits="objectBoundingBox"><rect width=".5" height=".5"/></clipPath>'
          '<rect x="10" y="10" width="20" height="40" clip-path="url(#c)"/>', (10, 10, 20, 30)),
+        # markers
+        ('<marker id="m" markerWidth="4" markerHeight="2" refX="4" refY="1" orient="auto"><rect width="9" height="9"/>'
+         '</marker><path d="M10 50H30V10" fill="none" marker-end="url(#m)" stroke-width="5"/>', (25, 10, 35, 30)),
+        ('<marker id="m" markerWidth="8" markerHeight="8" viewBox="0 0 2 2" refX="1" refY="center" '
+         'markerUnits="userSpaceOnUse"><rect width="2" height="2"/></marker>'
+         '<polyline points="10,10 20,10 20,30" fill="none" marker-mid="url(#m)"/>', (16, 6, 24, 14)),
+        ('<marker id="m" markerWidth="2" markerHeight="2" orient="auto-start-reverse" overflow="visible">'
+         '<rect width="5" height="1" fill="context-stroke"/></marker>'
+         '<line x1="50" y1="50" x2="60" y2="50" style="marker:url(#m)" />', (45, 49, 65, 51)),
+        ('<marker id="m" markerWidth="20" markerHeight="20"><path d="M0 0h5v5z" marker-start="url(#m)"/></marker>'
+         '<g transform="scale(2)"><path d="M1 1C1 9 2 9 9 9" fill="none" marker-start="url(#m)"/></g>', (2, 2, 12, 12)),
+        ('<rect x="10" y="20" width="40" height="20" clip-path="circle(5px)"/>', (25, 25, 35, 35)),
+        ('<rect x="10" y="20" width="40" height="20" clip-path="circle(closest-side at 25% 50%)"/>', (10, 20, 30, 40)),
+        ('<rect x="10" y="20" width="40" height="20" style="clip-path:ellipse(25% 50% at right)"/>', (40, 20, 50, 40)),
+        ('<rect x="10" y="20" width="40" height="20" clip-path="inset(5px 10% 0 10px)"/>', (20, 25, 46, 40)),
+        ('<rect x="10" y="20" width="40" height="20" clip-path="inset(1px 2px round 4px)"/>', (12, 21, 48, 39)),
+        ('<rect width="40" height="20" clip-path="polygon(evenodd, 0 0, 50% 0, 10px 100%)"/>', (0, 0, 20, 20)),
+        ('<rect width="9" height="9" clip-path="view-box polygon(0 0, 5% 0, 5% 4%, 0 4%)"/>', (0, 0, 5, 4)),
+        ('<rect x="10" y="10" width="20" height="20" stroke="red" stroke-width="2" clip-path="inset(0) fill-box"/>',
+         (10, 10, 30, 30)),
+        ('<g clip-path="inset(50% 0 0 0)" transform="scale(2)"><rect width="9" height="9"/></g>', (0, 9, 18, 18)),
         ('<clipPath id="c"><rect width="20" height="90"/></clipPath><clipPath id="d" clip-path="url(#c)">'
          '<rect width="90" height="20"/></clipPath><rect width="90" height="90" style="clip-path:url(#d)"/>',
          (0, 0, 20, 20)),
@@ -221,3 +242,13 @@ def test_that_colours_of_light_are_those_of_the_screen() -> None:
         assert colour_of(same)[:3] == pytest.approx((1.0, 0.0, 0.0), abs=0.06)
     assert colour_of("color(srgb-linear 0.2140 0 0 / 50%)") == pytest.approx((0.5, 0.0, 0.0, 0.5), abs=1e-3)
     assert colour_of("color(--own 1 1 1)") is None
+
+
+def test_that_a_shadow_that_is_hardly_seen_does_not_belong_to_the_shape(svg) -> None:
+    shadow = '<rect x="{}" y="4" width="40" height="40" opacity=".15"/>'
+    shape = '<rect width="40" height="40" fill="red"/>'
+    path = svg(shadow.format(4) + shape)
+    assert read_target(path).size == (40.0, 40.0)
+    assert read_parts(path).is_ambiguous
+    assert not read_parts(svg(shape + '<rect x="4" y="4" width="9" height="9" opacity=".15"/>')).is_ambiguous
+    assert read_target(svg(shadow.format(4))).size == (40.0, 40.0)

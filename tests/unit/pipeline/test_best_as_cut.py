@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from kirigami_studio.cli.design import _say_result
@@ -40,6 +41,24 @@ def run() -> Result:
         for number, iou in enumerate((0.99, 0.98, 0.90))
     )
     return Result(Request(target, (3, 3), k=3, regular=0.0, polish=0), candidates, 3, 0.0)
+
+
+def pieces(match: float, sheet: float) -> CloseLook:
+    found = AsCut(0.0, 0.0, Outcome.CLOSES, 0.0, 0.0, StrainFigure.IN_PLANE, match, match)
+    return CloseLook(None, found, match - sheet)
+
+
+@pytest.fixture
+def pinned_run() -> Result:
+    """Six pinwheels with room for pins that are said to match at 0.96, 0.95 and so on, one sheet moved a little."""
+    target = load("square")
+    signs = np.where(np.indices((3, 3)).sum(axis=0) % 2 == 0, 1.0, -1.0)
+    candidates = []
+    for number in range(6):
+        sheet = deploy(RatioField.from_log10((0.2 + 0.001 * number) * signs))
+        score = replace(evaluate(sheet, target), iou_exact=0.96 - 0.01 * number)
+        candidates.append(Candidate(sheet.sheet, score, seed=0, index=number))
+    return Result(Request(target, (3, 3), k=6, regular=0.0, polish=0, least_gap_mm=5.0), tuple(candidates), 6, 0.0)
 
 
 def ranked(run: Result, looks: Looks) -> tuple[Result, list[int]]:
@@ -105,3 +124,27 @@ def test_that_design_says_where_no_trimmed_design_can_be_cut(run: Result, capsys
     assert words in capsys.readouterr().out
     _say_result(run.request.target, run, {}, Verdict())
     assert words not in capsys.readouterr().out
+
+
+def test_that_pieces_are_ranked_by_their_own_match(pinned_run: Result) -> None:
+    first, second, third, fourth, *_ = pinned_run.candidates
+    looks = {first: pieces(0.98, 0.96), second: pieces(0.99, 0.95), third: REFUSED, fourth: pieces(0.985, 0.93)}
+    looks |= {one: pieces(0.97, one.score.iou_exact) for one in pinned_run.candidates[4:]}
+    found, seen = ranked(pinned_run, looks)
+    assert found.candidates[:3] == (second, fourth, first)
+    assert seen == [0, 1, 2, 3]
+    reasons = found.ranking.reasons(found.candidates)
+    codes = [reason.code for reason in reasons[:3]]
+    assert codes == ["rank.best_match_symmetric", "rank.less_match", "rank.less_match"]
+    assert "99.0 %" in reasons[0].text and "98.5 %" in reasons[1].text
+
+
+def test_that_no_more_than_four_designs_get_pieces_for_the_sake_of_their_match(pinned_run: Result) -> None:
+    looks = {one: pieces(0.97, one.score.iou_exact) for one in pinned_run.candidates}
+    _, seen = ranked(pinned_run, looks)
+    assert seen == [0, 1, 2, 3]
+
+
+def test_that_pieces_that_hardly_miss_anything_are_taken_at_once(pinned_run: Result) -> None:
+    found, seen = ranked(pinned_run, {pinned_run.candidates[0]: pieces(0.996, 0.96)})
+    assert found.best is pinned_run.candidates[0] and seen == [0]

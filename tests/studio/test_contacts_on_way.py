@@ -1,0 +1,69 @@
+"""Panels that would run through each other on the way of a sheet are stopped there, whatever joins them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import shapely
+
+from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.steps import result_of
+from kirigami_studio.mechanics.closing import Closing, closing
+from kirigami_studio.mechanics.path_contacts import contacts_on_way
+from kirigami_studio.project.store import load
+from kirigami_studio.settings.fabrication import with_choices
+from kirigami_studio.studio.as_cut import planned_sheet, simulate
+from kirigami_studio.studio.making import CutRequest, planned
+from tests.rigid_cases import CASES, DESIGNS
+
+#: A hexagon of card whose arcs turn beside their nodes, so that two panels across a void meet at 20 degrees.
+ARCS = next(options for name, options in CASES if name == "hexagon" and options.get("style") == "arc")
+
+
+def _request(name: str, options: dict[str, object]) -> CutRequest:
+    document = load(DESIGNS / f"{name}.kiri")
+    return CutRequest.of(document, with_choices(document.fabrication, options))
+
+
+def _deepest_mm(found: Closing, panels: list[FloatArray], pairs: np.ndarray, kerf_mm: float, phi: float) -> float:
+    """How far into each other (mm) pairs of panels (K, 2) are at an angle (radians)."""
+    network, deepest = found.sheet.network, 0.0
+    motion = found.motion_at(phi)
+    for one, other in pairs.tolist():
+        areas = []
+        for panel in (one, other):
+            turn = np.exp(1j * motion[panel, 2])
+            centroid = complex(*network.centroids[panel])
+            moved = centroid + complex(*motion[panel, :2]) + turn * (panels[panel] @ (1.0, 1j) - centroid)
+            ring = shapely.Polygon(np.column_stack([moved.real, moved.imag]))
+            areas.append(shapely.buffer(ring, -0.5 * kerf_mm, join_style="mitre"))
+        both = shapely.intersection(*areas)
+        if not both.is_empty and both.area > 0.0:
+            deepest = max(deepest, 2.0 * float(shapely.length(shapely.maximum_inscribed_circle(both))))
+    return deepest
+
+
+def test_that_panels_across_a_void_stop_each_other_where_connectors_turn_beside_their_nodes() -> None:
+    request = _request("hexagon", ARCS)
+    plan, width = planned(request).plan, request.settings.width_mm
+    sheet = planned_sheet(plan.cut_from(request.deployment), plan, width)
+    assert not len(sheet.network.stops)
+    through = closing(sheet)
+    simulated = result_of(simulate(request.deployment, plan, width, 0.0))
+    panels = simulated.panels.numbered(len(plan.panels))
+    found = contacts_on_way(panels, through, plan.kerf_mm)
+    pairs, phi = np.unique(np.sort(found.panels, axis=1), axis=0), math.radians(14.0)
+    before, after = (_deepest_mm(one, panels, pairs, plan.kerf_mm, phi) for one in (through, simulated.closing))
+    width_mm = float(sheet.connectors.width_mm.mean())
+    assert before > 0.3 * width_mm and after < 0.5 * before
+    assert 0 < len(found) <= len(simulated.closing.sheet.network.stops)
+
+
+def test_that_a_sheet_whose_panels_pass_each_other_is_closed_once() -> None:
+    request = _request("heart", {})
+    plan = planned(request).plan
+    simulated = result_of(simulate(request.deployment, plan, request.settings.width_mm, 0.0))
+    assert simulated.as_cut.closes
+    sheet = planned_sheet(plan.cut_from(request.deployment), plan, request.settings.width_mm)
+    assert len(simulated.closing.sheet.network.stops) == len(sheet.network.stops)
