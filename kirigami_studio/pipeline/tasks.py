@@ -202,10 +202,10 @@ class CoverTask:
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit and cut, unless the design crosses itself."""
-        sizes = {"least_panel": request.kept_when_trimmed, "even": request.even}
-        keep = request.keep if self.candidate.trim is None else self.candidate.trim.keep
+        least, even, one = request.kept_when_trimmed, request.even, self.candidate
+        keep = request.keep if one.trim is None else one.trim.keep
         try:
-            made = covered(self.candidate, request.target, keep, stopped, **sizes)
+            made = covered(one, request.target, keep, stopped, least_panel=least, even=even)
         except KirigamiError:
             return TaskResult(None, 1)
         return TaskResult(made.candidate, made.evaluations)
