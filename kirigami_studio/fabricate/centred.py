@@ -430,7 +430,7 @@ class _Draft:
             able = {hinge for hinge in turning if self._can_tighten(hinge)}
             tight |= able or (set() if bows else turning)
             flatter |= set() if able else bows
-        return tight | self._curling_back(shapely.multilinestrings(lines[-len(self._rims) :])), flatter
+        return tight | self._curling_back(shapely.MultiLineString(lines[-len(self._rims) :].tolist())), flatter
 
     def _curling_back(self, outline: shapely.Geometry) -> set[int]:
         """Hinges whose edge cuts, after they came from the outline, turn back to it by less than a span."""
@@ -453,9 +453,13 @@ class _Draft:
     def _lines(self) -> npt.NDArray[np.object_]:
         """Centre lines of all pieces, then of the rims, with ``CHORDS`` chords for each arc."""
         closed = [
-            RimCut(np.concatenate([rim.points, rim.points[:1]]), np.append(rim.bulges, 0.0)) for rim in self._rims
+            RimCut(
+                np.concatenate([rim.points, rim.points[:1]]),
+                np.append(np.zeros(len(rim.points)) if rim.bulges is None else rim.bulges, 0.0),
+            )
+            for rim in self._rims
         ]
-        drawn = [*self._made, *closed]
+        drawn: list[CutPiece | RimCut] = [*self._made, *closed]
         points = [one.points for one in drawn]
         bulges = [np.zeros(len(one.points)) if one.bulges is None else one.bulges for one in drawn]
         place, bulge = np.concatenate(points), np.concatenate(bulges)
