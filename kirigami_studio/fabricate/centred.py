@@ -91,7 +91,10 @@ class Arranged:
     def pieces(self, kerf_mm: float) -> int:
         """How many pieces the sheet falls into: what a trimmed outline leaves beside a moved cut may come off."""
         outline, *holes = (rim.line for rim in self.rims)
-        return len(remaining_pieces(Polygon(outline, holes), [piece.line for piece in self.cuts.pieces], kerf_mm))
+        area = Polygon(outline, holes)
+        if not area.is_valid:  # bows of two rims that cross part what lies between them
+            return 2 + len(self.rims) + len(self.cuts.pieces)
+        return len(remaining_pieces(area, [piece.line for piece in self.cuts.pieces], kerf_mm))
 
 
 def rims_of(outline: Polygon) -> tuple[RimCut, ...]:
