@@ -500,7 +500,7 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
         )
     ended = [tr("The budget ended the run.")] if result.budget_ended else []
     say(" ".join((best, *ended)))
-    if result.request.trim and trim is None and result.ranking.cuttable(result.best):
+    if result.request.trims and trim is None and result.ranking.cuttable(result.best):
         say(
             tr(
                 "{name}: no trimmed design can be cut in this material; the best design that can is not trimmed.",

@@ -113,7 +113,7 @@ def measured(panels: GeometryArray, common: GeometryArray, shapes: GeometryArray
 
 def polygons(corners: FloatArray, holes: Sequence[FloatArray] = ()) -> GeometryArray:
     """Polygons (E,) with the given vertices (E, P, 2) and holes (E, H, 2), snapped to the grid."""
-    inner = np.stack([shapely.linearrings(hole) for hole in holes], axis=1) if holes else None
+    inner = np.stack([np.asarray(shapely.linearrings(hole), dtype=object) for hole in holes], axis=1) if holes else None
     made = shapely.polygons(corners if inner is None else shapely.linearrings(corners), inner)
     snapped: GeometryArray = shapely.set_precision(np.asarray(made, dtype=object), GRID)
     return snapped

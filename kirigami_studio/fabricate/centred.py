@@ -91,7 +91,10 @@ class Arranged:
     def pieces(self, kerf_mm: float) -> int:
         """How many pieces the sheet falls into: what a trimmed outline leaves beside a moved cut may come off."""
         outline, *holes = (rim.line for rim in self.rims)
-        return len(remaining_pieces(Polygon(outline, holes), [piece.line for piece in self.cuts.pieces], kerf_mm))
+        area = Polygon(outline, holes)
+        if not area.is_valid:  # bows of two rims that cross part what lies between them
+            return 2 + len(self.rims) + len(self.cuts.pieces)
+        return len(remaining_pieces(area, [piece.line for piece in self.cuts.pieces], kerf_mm))
 
 
 def rims_of(outline: Polygon) -> tuple[RimCut, ...]:
@@ -430,7 +433,7 @@ class _Draft:
             able = {hinge for hinge in turning if self._can_tighten(hinge)}
             tight |= able or (set() if bows else turning)
             flatter |= set() if able else bows
-        return tight | self._curling_back(shapely.multilinestrings(lines[-len(self._rims) :])), flatter
+        return tight | self._curling_back(shapely.MultiLineString(lines[-len(self._rims) :].tolist())), flatter
 
     def _curling_back(self, outline: shapely.Geometry) -> set[int]:
         """Hinges whose edge cuts, after they came from the outline, turn back to it by less than a span."""
@@ -453,9 +456,13 @@ class _Draft:
     def _lines(self) -> npt.NDArray[np.object_]:
         """Centre lines of all pieces, then of the rims, with ``CHORDS`` chords for each arc."""
         closed = [
-            RimCut(np.concatenate([rim.points, rim.points[:1]]), np.append(rim.bulges, 0.0)) for rim in self._rims
+            RimCut(
+                np.concatenate([rim.points, rim.points[:1]]),
+                np.append(np.zeros(len(rim.points)) if rim.bulges is None else rim.bulges, 0.0),
+            )
+            for rim in self._rims
         ]
-        drawn = [*self._made, *closed]
+        drawn: list[CutPiece | RimCut] = [*self._made, *closed]
         points = [one.points for one in drawn]
         bulges = [np.zeros(len(one.points)) if one.bulges is None else one.bulges for one in drawn]
         place, bulge = np.concatenate(points), np.concatenate(bulges)

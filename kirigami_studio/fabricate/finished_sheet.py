@@ -64,7 +64,8 @@ def remaining_pieces(boundary: BaseGeometry, cuts: Sequence[BaseGeometry], kerf_
     all_cuts = np.array([*cuts, boundary.boundary], dtype=object)
     burned = shapely.disjoint_subset_union_all(shapely.buffer(all_cuts, 0.5 * width, quad_segs=TIP_SEGMENTS))
     # The function lets other threads run meanwhile, the method of a geometry does not: 60 ms for 24 x 24 voids.
-    left = shapely.get_parts(shapely.difference(boundary, burned))
+    sheet = boundary if boundary.is_valid else shapely.make_valid(boundary)
+    left = shapely.get_parts(shapely.difference(sheet, burned))
     pieces = [piece for piece in left if isinstance(piece, Polygon) and piece.area > DUST_MM2]
     return sorted(pieces, key=lambda piece: -piece.area)
 

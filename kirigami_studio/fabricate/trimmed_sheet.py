@@ -172,7 +172,7 @@ def trimmed_cuts(
 def _up_to_cuts(area: Polygon, sides: FloatArray, lines: FloatArray) -> Polygon:
     """The area less the strips between the sides (C, 2, 2) of its holes and the cuts beside."""
     rims = shapely.multilinestrings(list(area.interiors))
-    near = shapely.buffer(shapely.linestrings(sides), ON_SIDE_MM, cap_style="flat")
+    near = np.asarray(shapely.buffer(shapely.linestrings(sides), ON_SIDE_MM, cap_style="flat"), dtype=object)
     strips = []
     for cut in shapely.STRtree(near).query(rims, "intersects").tolist():
         run = np.diff(sides[cut], axis=0)[0]
