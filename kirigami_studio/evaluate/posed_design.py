@@ -181,7 +181,7 @@ def trimmed_parts(deployment: Deployment, trim: Trim) -> TrimmedParts:
 def covered(
     sheet: FloatArray, target: shapely.Polygon, removed: Sequence[FloatArray] = (), voids: FloatArray | None = None
 ) -> BaseGeometry:
-    """The area within the outline of a sheet (L, 2), crossings and all, but for what was cut off.
+    """The area within the outline of a sheet (L, 2), crossings and all, less what was cut off.
 
     Parameters
     ----------

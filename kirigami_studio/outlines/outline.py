@@ -135,7 +135,7 @@ class Outline:
 
     @property
     def filled(self) -> Outline:
-        """The same outline with its holes filled, and kept aside: the silhouette that a whole sheet can show."""
+        """The same outline with its holes filled and kept aside: all that a whole sheet can show."""
         return self._with(holes=(), filled_holes=(*self.filled_holes, *self.holes)) if self.holes else self
 
     @property

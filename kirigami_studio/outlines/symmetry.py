@@ -231,7 +231,7 @@ def _highest(value: Callable[[float], float], low: float, high: float) -> float:
 
 
 def _iou(polygon: shapely.Polygon, moved: Callable[[FloatArray], FloatArray]) -> float:
-    """IoU of a polygon and its image, whose points (L, 2) are moved without a change of its area."""
+    """IoU of a polygon and its image of the same area, whose points (L, 2) are moved."""
     outer, *holes = (moved(shapely.get_coordinates(ring)) for ring in (polygon.exterior, *polygon.interiors))
     common = polygon.intersection(shapely.Polygon(outer, holes)).area
     return float(common / (2.0 * polygon.area - common))
