@@ -57,7 +57,7 @@ PUSHED, MOST_LOOKS = 0.1, 4
 SQUEEZED = 0.5
 #: A step on which panels meet is taken in so many parts.
 FINER = 8
-MOST_ITERATIONS, FINE_STEP = 25, 1e-7
+MOST_ITERATIONS, FINE_STEP = 25, 1e-5
 
 
 @dataclass(frozen=True)
@@ -368,12 +368,13 @@ class _Model:
             necks.setdefault((pair[0], pair[1]), []).append(place)
         found = []
         for pair in _neighbours(panels):
-            # What meets beside a neck is squeezed: flanks stop each other at their far ends.
-            size = SQUEEZED * min(self.sheet.size_mm[[*pair]])
-            beside = shapely.union_all([Point(at.real, at.imag).buffer(size) for at in necks.get(pair, ())])
-            shapes = {panel: shapely.difference(panels[panel], beside) for panel in pair}
             for inner, outer in (pair, pair[::-1]):
-                line = _deepest(shapes[inner], shapes[outer])
+                line = _deepest(panels[inner], panels[outer])
+                if line is not None and abs(line[1] - line[0]) >= least and pair in necks:
+                    # What meets beside a neck is squeezed: flanks stop each other at their far ends.
+                    size = SQUEEZED * min(self.sheet.size_mm[[*pair]])
+                    beside = shapely.union_all([Point(at.real, at.imag).buffer(size) for at in necks[pair]])
+                    line = _deepest(*(shapely.difference(panels[panel], beside) for panel in (inner, outer)))
                 if line is None or abs(line[1] - line[0]) < least:
                     continue
                 point, foot = (self._at_rest(state, *end) for end in zip((inner, outer), line, strict=True))

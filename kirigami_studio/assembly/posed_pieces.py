@@ -117,6 +117,7 @@ class PosedPieces:
     look: PieceLook
     head_mm: float = 0.0  #: diameter of the heads of pins; 0 for none
     holds: tuple[HoldPlace, ...] = ()  #: places that hold it in its end states
+    grips: tuple[int, int] | None = None  #: panels to hold and to pull, row by row
 
     @classmethod
     def of(

@@ -142,7 +142,7 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
 
 
 def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry) -> Iterator[Polygon]:
-    """The body of a piece cut along an outline, its pins joined where they are outside, then farther and farther out.
+    """Bodies of a piece cut along an outline, its outer pins joined, then farther and farther out.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry)
 
 
 def shortest_links(body: Polygon, pins: FloatArray, inside: BaseGeometry, half_mm: float) -> BaseGeometry:
-    """Necks that join the pins of a piece, and its largest part in an area, as far as they can inside of that.
+    """Necks that join the pins of a piece and its largest part in an area, the shortest outside.
 
     They follow the middles of the sides of triangles that the piece is divided in, where it has a neck's width.
 
@@ -217,9 +217,9 @@ def shortest_links(body: Polygon, pins: FloatArray, inside: BaseGeometry, half_m
 
 
 def _joined(ways: list[list[tuple[int, float]]], ends: Sequence[int]) -> list[list[int]]:
-    """Ways through a graph that join some of its places, each to the nearest of those joined before."""
-    joined, found = {ends[0]}, []
-    left = set(ends[1:])
+    """Ways through a graph that join some places, each to the nearest of those joined before."""
+    joined, left = {ends[0]}, set(ends[1:])
+    found: list[list[int]] = []
     while left:
         before: dict[int, int] = {}
         heap = [(0.0, place, place) for place in sorted(joined)]

@@ -60,7 +60,7 @@ def check_tiles(
     widths = [_width_mm(tile, least_mm) for tile in tiles]
     opening = Polygon(board.pieces[-1].openings[0] + (board.places[-1] - board.layer_at)).exterior
     _, near = shapely.STRtree([*tiles, opening]).query_nearest(
-        tiles, return_distance=True, all_matches=False, exclusive=True
+        np.array(tiles, dtype=object), return_distance=True, all_matches=False, exclusive=True
     )
     web = float(near.min(initial=math.inf)) - 2.0 * kerf_mm
     figures = TileFigures(len(tiles), backed.missing, backed.covered, min(widths, default=0.0), web if tiles else 0.0)

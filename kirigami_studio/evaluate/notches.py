@@ -144,7 +144,7 @@ class _NotchCut:
         self._known: dict[tuple[int, bytes], tuple[float, BaseGeometry | None]] = {}
 
     def first(self) -> BoolArray:
-        """The largest set of voids that mostly lie on the target, without holes unless they may be open."""
+        """The largest set of voids mostly on the target, without holes unless they may be open."""
         mostly = _largest(self._shares() >= MOSTLY)
         if self._open_inside:
             return mostly
@@ -153,7 +153,7 @@ class _NotchCut:
         return whole
 
     def _is_one(self, voids: BoolArray) -> bool:
-        """Whether voids are connected from hinge to hinge, and so is what lies around them unless it may be open."""
+        """Whether voids hang together by hinges, and so does all around them unless it may be open."""
         if _labelled(voids)[1] != 1:
             return False
         return self._open_inside or _labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)[1] == 1

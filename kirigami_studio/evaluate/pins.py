@@ -138,6 +138,11 @@ def least_pin_distance(deployment: Deployment) -> float:
     return float(pin_distances(deployment.compact, *deployment.sheet.grid).size.min())
 
 
+def least_neck(deployment: Deployment) -> float:
+    """The least of :func:`notch_necks`, unit cells; infinite where no side has notches."""
+    return float(notch_necks(deployment.compact, *deployment.sheet.grid).size.min(initial=math.inf))
+
+
 @lru_cache(maxsize=4096)
 def least_gap_of(sheet: Sheet) -> float:
     """The same of a sheet that may be asked again: designs are ranked by it."""
@@ -241,17 +246,34 @@ def _closed_places(number: int, panels: list[list[int]], owners: dict[int, list[
     return places
 
 
+@dataclass(frozen=True, slots=True)
+class RoomBound:
+    """Least distance of pins, and least necks beside notches, that changes of a sheet keep; unit cells."""
+
+    pins: float
+    necks: float
+
+    @classmethod
+    def of(cls, before: Deployment, least: float) -> RoomBound:
+        """Bounds on changes of a sheet: as asked for, or what it has."""
+        return cls(min(least, least_pin_distance(before)) - GAP_ROUNDING, min(least, least_neck(before)) - GAP_ROUNDING)
+
+    def keeps(self, after: Deployment) -> bool:
+        """Whether a changed sheet has as much room."""
+        return least_pin_distance(after) >= self.pins and least_neck(after) >= self.necks
+
+
 def kept_apart(before: Sheet, wanted: Sheet, least: float) -> Sheet:
-    """Go from one sheet towards another as far as pins keep apart on the way.
+    """Go from one sheet towards another as far as pins keep apart, and necks beside notches wide, on the way.
 
     Parameters
     ----------
     before : Sheet
-        One whose pins are too near already may go anywhere that brings no pins nearer.
+        One whose pins are too near already may go anywhere that brings no pins nearer; so may one with narrow necks.
     wanted : Sheet
         Of the same grid.
     least : float, unit cells
-        Distance that pins have to keep; 0 asks for none.
+        Distance that pins have to keep, and that necks are listed by; 0 asks for none.
 
     Returns
     -------
@@ -260,14 +282,18 @@ def kept_apart(before: Sheet, wanted: Sheet, least: float) -> Sheet:
     """
     if least <= 0.0 or wanted == before:
         return wanted
-    bound = min(least, least_pin_distance(deploy(before))) - GAP_ROUNDING
-    if least_pin_distance(deploy(wanted)) >= bound and _one_hand(before, wanted):
+    bound = RoomBound.of(deploy(before), least)
+
+    def has_room(sheet: Sheet) -> bool:
+        return _one_hand(before, sheet) and bound.keeps(deploy(sheet))
+
+    if has_room(wanted):
         return wanted
     reached, beyond, found = 0.0, 1.0, before
     for _ in range(HALVINGS):
         middle = 0.5 * (reached + beyond)
         sheet = _between(before, wanted, middle)
-        if least_pin_distance(deploy(sheet)) >= bound and _one_hand(before, sheet):
+        if has_room(sheet):
             reached, found = middle, sheet
         else:
             beyond = middle

@@ -50,7 +50,7 @@ def siou_of_many(shapes: Sequence[FloatArray], target: Outline) -> list[ShapeMat
 
 
 def iou_of_area(area: shapely.Polygon, target: Outline) -> float:
-    """Exact IoU of an area in its best pose, with those of its openings that lie mostly in holes of the target."""
+    """Exact IoU of an area in its best pose, open where that is mostly a hole of the target."""
     ring = shapely.get_coordinates(area.exterior)[:-1]
     (match,) = siou_of_many([ring], target)
     if not target.holes:
@@ -90,7 +90,7 @@ def _matches(shapes: Sequence[FloatArray], target: Outline, transforms: Sequence
 
 
 def aligned_sious(laid: FloatArray, target: FloatArray, holes: Sequence[FloatArray] = ()) -> FloatArray:
-    """The sIoU of silhouettes (B, L, 2) that lie on the target (K, 2), less its holes, as they should: (B,)."""
+    """The sIoU (B,) of silhouettes (B, L, 2) laid on the target (K, 2) less its holes."""
     frame = RasterFrame.around(target)
     masks, (row, column) = filled_in_frame(as_plane(laid), frame)
     still = np.zeros(masks.shape[1:], dtype=np.bool_)

@@ -63,7 +63,7 @@ class TrimmedHole:
 
 @dataclass(frozen=True, slots=True)
 class Trim:
-    """A trimmed design; two are equal when sheet, angle, pose, depth and match are, for then the rest is."""
+    """A trimmed design, equal to another of the same sheet, angle, pose, depth and match."""
 
     sheet: Sheet
     phi: float  #: radians; the angle at which the panels were cut
@@ -226,7 +226,7 @@ def _turn(even: BoolArray, phi: float) -> ComplexArray:
 
 
 def _brought_back(deployment: Deployment, panels: PanelTable, phi: float, place: Polygon) -> GeometryArray:
-    """The target in the layout's frame at ``phi``, carried to the compact sheet with each panel: (E,) Polygon."""
+    """The target (E,) as each panel carries it from the layout at ``phi`` to the compact sheet."""
     anchors = panels.corners[:, 0]
     start, end = as_plane(deployment.nodes(phi))[anchors], as_plane(deployment.compact)[anchors]
     back = np.conj(_turn(panels.even, phi))

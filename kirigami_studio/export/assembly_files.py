@@ -125,6 +125,8 @@ class AssemblyJob:
         Of the flat sheet; 0 where that is not known.
     glued : Glued or None
         The hinge layer that the pieces are glued on, in the place of pins.
+    grips : (str, str) or None
+        Ids of the pieces to hold and to pull, so that the flat sheet opens.
     """
 
     assembly: Assembly
@@ -151,6 +153,7 @@ class AssemblyJob:
     drive: DriveParts | None = None
     width_mm: float = 0.0
     glued: Glued | None = None
+    grips: tuple[str, str] | None = None
 
     @property
     def whole(self) -> Assembly:
@@ -288,6 +291,7 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
     verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
     sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
+    sheet = replace(sheet, grips=job.grips)
     if (glued := job.glued) is not None:
         template = board_bed(glued.board, 0.0)
         sheet = replace(
@@ -619,6 +623,8 @@ class PartLine:
     count : int or None
     diameter_mm, length_mm, area_mm2, cut_mm, seconds : float or None
     note : str
+    material : str
+        Name of a material, which the note has, too.
     """
 
     item: str
@@ -632,6 +638,7 @@ class PartLine:
     cut_mm: float | None = None
     seconds: float | None = None
     note: str = ""
+    material: str = ""
 
 
 #: Headings of the columns, by the names of the entries.
@@ -732,7 +739,8 @@ def _hinge_layer_parts(job: AssemblyJob) -> list[PartLine]:
 
 def _material_part(material: Material, sizes: Sequence[tuple[float, float]]) -> PartLine:
     note = tr("{material}; area of the rectangles round what is cut", material=tr(material.name))
-    return PartLine("material", count=len(sizes), note=note, area_mm2=sum(width * height for width, height in sizes))
+    area = sum(width * height for width, height in sizes)
+    return PartLine("material", count=len(sizes), note=note, area_mm2=area, material=material.name)
 
 
 def _area(piece: Piece) -> float:
@@ -786,7 +794,7 @@ def _part_lines(job: AssemblyJob) -> tuple[str, ...]:
                 "{material}: {area:.0f} cm2 on {count} bed",
                 "{material}: {area:.0f} cm2 on {count} beds",
                 count,
-                material=tr(job.material.name),
+                material=tr(part.material),
                 area=(part.area_mm2 or 0.0) / 100.0,
             )
         elif part.item == "hinge layer":

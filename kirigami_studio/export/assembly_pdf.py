@@ -20,7 +20,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 
 from kirigami_studio import __version__
-from kirigami_studio.assembly.driving import DriveParts
+from kirigami_studio.assembly.driving import BOARD, HANDLE, DriveParts
 from kirigami_studio.assembly.holding import HoldPlace
 from kirigami_studio.assembly.pieces import Assembly, Hinge
 from kirigami_studio.export import picture
@@ -58,10 +58,18 @@ PIN: Colour = picture.TARGET_EDGE
 #: Places that hold the sheet, and how far their numbers stand beside them (points).
 HOLD: Colour = (178, 34, 34)
 BESIDE_POINTS = 3.0
+#: Where to hold and to pull: colour, radius of a disc, length of an arrow and of its head (mm), and the angle (radians)
+#: whose places tell the way.
+GRIP: Colour = (46, 125, 50)
+GRIP_MM, ARROW_MM, HEAD_MM, AHEAD = 1.3, 12.0, 3.0, math.radians(177.0)
 #: Corners nearer than this (mm) to the line of their neighbours are left out of pictures.
 UNSEEN_MM = 0.02
 #: Corners of a pin's circle.
 PIN_CORNERS = 24
+#: How far up its picture the name of a board stands, relative to its height.
+NAME_SHARE = 0.06
+#: How far below a number a grip is marked, in heights of the number.
+BELOW = 0.5
 #: Sizes of letters (points), and distance of lines (mm).
 TITLE_POINTS, HEAD_POINTS, TEXT_POINTS, LINE_STEP_MM = 17, 11, 8.5, 4.3
 #: Numbers in pictures are this share of a piece's room, and at least and at most so large (points).
@@ -115,6 +123,8 @@ class AssemblySheet:
         Frame and tiles that are shown at true size in the place of the flat sheet.
     under : (L, 2) float, mm
         Outline of the hinge layer there.
+    grips : (str, str) or None
+        Ids of the pieces to hold and to pull, so that the flat sheet opens.
     """
 
     assembly: Assembly
@@ -130,6 +140,7 @@ class AssemblySheet:
     pins_are_put_in: bool = True
     template: CutBed | None = None
     under: FloatArray | None = None
+    grips: tuple[str, str] | None = None
 
 
 def write_assembly_pdf(sheet: AssemblySheet, path: Path, paper: str = Paper.NONE) -> None:
@@ -386,7 +397,7 @@ class _Column:
 
 def _printable(text: str) -> str:
     """The letters that the fonts of every reader of PDF have."""
-    return text.encode("cp1252", "replace").decode("cp1252")
+    return text.replace("\N{RIGHTWARDS ARROW}", ">").encode("cp1252", "replace").decode("cp1252")
 
 
 def _title(canvas: Any, text: str, page: Size) -> float:
@@ -416,7 +427,10 @@ def _first_page(canvas: Any, sheet: AssemblySheet, page: Size) -> None:
         canvas.setFont("Helvetica-Bold", HEAD_POINTS)
         canvas.drawString(left * mm, top * mm, _printable(words))
         low = top - 4.0 - height + 0.5 * (height - scale * drawing.size[1])
-        _draw(canvas, drawing, scale, np.array([left + 0.5 * (width - scale * drawing.size[0]), low]))
+        corner = np.array([left + 0.5 * (width - scale * drawing.size[0]), low])
+        _draw(canvas, drawing, scale, corner)
+        if number == 0 and sheet.grips is not None:
+            _draw_grips(canvas, sheet.assembly, sheet.grips, drawing, scale, corner)
     y = top - 4.0 - height - GAP_MM
     _legend(canvas, sheet, y, scale)
     column = _Column(canvas, MARGIN_MM, y - GAP_MM, page[0] - 2.0 * MARGIN_MM)
@@ -430,6 +444,30 @@ def _first_page(canvas: Any, sheet: AssemblySheet, page: Size) -> None:
     _ink(canvas)
     draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
     canvas.showPage()
+
+
+def _draw_grips(
+    canvas: Any, assembly: Assembly, grips: tuple[str, str], flat: _Drawing, scale: float, corner: FloatArray
+) -> None:
+    """A disc on the piece to hold, and an arrow from the piece to pull the way that it goes first, seen from that."""
+    names = list(assembly.by_id)
+    here, ahead = (assembly.poses(phi)[[names.index(name) for name in grips], :2] for phi in (math.pi, AHEAD))
+    shapes = [next(one for one in flat.shapes if one.number == name) for name in grips]
+    # Below the numbers.
+    held, pulled = (corner + scale * (one.at - np.array([0.0, BELOW * one.room_mm])) for one in shapes)
+    way = (ahead[1] - here[1]) - (ahead[0] - here[0])
+    length = float(np.hypot(*way))
+    _fill(canvas, [held + GRIP_MM * CIRCLE], GRIP)
+    if length <= 0.0:
+        return
+    along = way / length
+    across = np.array([-along[1], along[0]])
+    tip = pulled + ARROW_MM * along
+    neck = tip - HEAD_MM * along
+    _fill(canvas, [pulled + GRIP_MM * CIRCLE], GRIP)
+    _fill(canvas, [np.array([tip, neck + 0.6 * HEAD_MM * across, neck - 0.6 * HEAD_MM * across])], GRIP)
+    shaft = 0.25 * GRIP_MM * across
+    _fill(canvas, [np.array([pulled + shaft, neck + shaft, neck - shaft, pulled - shaft])], GRIP)
 
 
 def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
@@ -450,6 +488,10 @@ def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
     if sheet.holds:
         _fill(canvas, [np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE], HOLD)
         x = _words(canvas, tr("keeps it so"), x + 5.0, y)
+    if sheet.grips is not None:
+        _fill(canvas, [np.array([x + 1.5, y + 1.5]) + GRIP_MM * CIRCLE], GRIP)
+        held, pulled = sheet.grips
+        x = _words(canvas, tr("hold {held}, pull {pulled}", held=held, pulled=pulled), x + 5.0, y)
     _words(canvas, tr("pictures at 1 : {scale:.1f}", scale=1.0 / scale), x, y)
 
 
@@ -511,7 +553,7 @@ def _page_of_drive(canvas: Any, drive: DriveParts, page: Size) -> None:
         (math.pi, tr("Flat")),
         (parts.phi_target, tr("Opened, {angle:.0f} degrees", angle=math.degrees(parts.phi_target))),
     )
-    drawings = [_Drawing.of(parts, phi) for phi, _ in ends]
+    drawings = [_of_drive(_Drawing.of(parts, phi)) for phi, _ in ends]
     scale = min(_fitting(drawing, (width, 0.42 * page[1])) for drawing in drawings)
     for number, (drawing, (_, words)) in enumerate(zip(drawings, ends, strict=True)):
         left = MARGIN_MM + number * (width + GAP_MM)
@@ -527,6 +569,17 @@ def _page_of_drive(canvas: Any, drive: DriveParts, page: Size) -> None:
     _ink(canvas)
     draw_ruler(canvas, f"Kirigami Studio {__version__}", "")
     canvas.showPage()
+
+
+def _of_drive(drawing: _Drawing) -> _Drawing:
+    """The picture of a drive with the board's name in its corner, and without that of the handle behind an arm."""
+    shapes = []
+    for shape in drawing.shapes:
+        if shape.number == BOARD:
+            low, high = shape.rings[0].min(axis=0), shape.rings[0].max(axis=0)
+            shape = replace(shape, at=np.array([0.5 * (low[0] + high[0]), low[1] + NAME_SHARE * (high[1] - low[1])]))
+        shapes.append(replace(shape, number="") if shape.number == HANDLE else shape)
+    return replace(drawing, shapes=tuple(shapes))
 
 
 def _pages_of_beds(canvas: Any, beds: Sequence[CutBed], page: Size) -> int:

@@ -409,7 +409,7 @@ def _holes_said(facts: Mapping[str, str]) -> int:
 
 
 def _with_holes(outline: Polygon, content: DxfContent, problems: list[Problem]) -> Polygon:
-    """The area inside the outline less the holes that the file says it has: the last closed cuts before the outline.
+    """The area inside the outline less as many holes as the file says: the last closed cuts.
 
     Slots run into holes: in a file of slots they are slots like the others.
     """
@@ -541,7 +541,7 @@ def _physics(
 
 
 def _loose_discs(inner: Sequence[FilePath], meant: int = 0) -> list[Problem]:
-    """Closed cuts inside the outline, beside relief holes, slots and holes that are meant: their inside falls out."""
+    """Closed cuts whose inside falls out, beside relief holes, slots and holes that are meant."""
     closed = [Polygon(path.points) for path in inner if path.closed and path.layer != Layer.RELIEF.value
               and len(path.points) > 3]  # fmt: skip
     # Twice the area over half the length: about the width of a slot, the radius of a disc.

@@ -117,6 +117,8 @@ class PrintJob:
         Parts that hold it in its end states.
     holds : tuple of HoldPlace
         Where they are.
+    grips : (str, str) or None
+        Ids of the pieces to hold and to pull.
     """
 
     assembly: Assembly
@@ -130,6 +132,7 @@ class PrintJob:
     verdict: str = ""
     hold: HoldOptions = field(default_factory=HoldOptions)
     holds: tuple[HoldPlace, ...] = ()
+    grips: tuple[str, str] | None = None
 
     construction = Construction.PRINTED
     notes = ()
@@ -299,6 +302,7 @@ def write_print(
             steps=steps,
             legend=LEGEND,
             hold_steps=SIDE_BY_SIDE_STEPS,
+            grips=job.grips,
             pins_are_put_in=False,
         )
         write_assembly_pdf(sheet, fresh / SHEET, job.paper)

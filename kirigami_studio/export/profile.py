@@ -59,7 +59,7 @@ class Profile:
     svg_dpi: float = MM_DPI
 
     def sheet_colour(self, layer: Layer) -> int:
-        """Colour of a layer of a sheet, whose holes are no slits; pieces without slits have their holes in red."""
+        """Colour of a layer of a sheet, whose holes are no slits; those of pieces are red."""
         by_layer = self.colour[Layer.HOLES] != self.colour[Layer.OUTLINE]
         return CYAN if by_layer and layer is Layer.HOLES else self.colour[layer]
 

@@ -411,7 +411,7 @@ def file_physics(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> 
 
 
 def _rims(plan: CutPlan, profile: Profile) -> tuple[int, int]:
-    """How many strokes of a file, at its end, are the outline, and how many before them the holes.
+    """Numbers of strokes at the end of a file: of the outline, and of the holes before it.
 
     Slots run into the holes: of a file with slots they are slots like the others.
     """

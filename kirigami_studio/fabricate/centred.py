@@ -52,7 +52,7 @@ SLIGHTLY_NARROWER, SLIGHT_DOWN_TO, NARROWER = 0.95, 0.75, 0.8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Rim:
+class RimCut:
     """Centre line of a cut along the edge of the material, which is on its left."""
 
     points: FloatArray  #: (P, 2), mm; the first one not repeated
@@ -69,7 +69,7 @@ class Arranged:
     """Cuts with centred connectors."""
 
     cuts: HingedCuts
-    rims: tuple[Rim, ...]  #: the outline, counter-clockwise, then the holes, clockwise
+    rims: tuple[RimCut, ...]  #: the outline, counter-clockwise, then the holes, clockwise
     centres: FloatArray | None  #: (H, 2), mm; where the connectors turn; None for styles that do not place them.
     #: How many connectors had no room to be centred, so that the voids beside them are no parallelograms.
     off_centre: int = 0
@@ -94,10 +94,10 @@ class Arranged:
         return len(remaining_pieces(Polygon(outline, holes), [piece.line for piece in self.cuts.pieces], kerf_mm))
 
 
-def rims_of(outline: Polygon) -> tuple[Rim, ...]:
+def rims_of(outline: Polygon) -> tuple[RimCut, ...]:
     """The ring of an outline and those of its holes."""
     oriented = shapely.orient_polygons(outline)
-    return tuple(Rim(shapely.get_coordinates(ring)[:-1]) for ring in (oriented.exterior, *oriented.interiors))
+    return tuple(RimCut(shapely.get_coordinates(ring)[:-1]) for ring in (oriented.exterior, *oriented.interiors))
 
 
 #: Makes outline and remaining straight cuts from cuts (C, 2, 2) that end at their tips.
@@ -371,7 +371,7 @@ class _Draft:
             found.append((place, hinge, bow))
         return [(hinge, bow) for _, hinge, bow in sorted(found, key=lambda entry: entry[0])]
 
-    def _bowed_rims(self) -> list[Rim]:
+    def _bowed_rims(self) -> list[RimCut]:
         """The outline and the holes with bows around the connectors on them."""
         rims = [replace(rim, bulges=np.zeros(len(rim.points))) for rim in rims_of(self._outline)]
         middles, radii = self._centres.circle
@@ -389,8 +389,8 @@ class _Draft:
                 self._crowded.add(hinge)
         return rims
 
-    def _bowed_rim(self, rim: Rim, hinge: int, middle: FloatArray, radius: float) -> Rim | None:
-        """A rim with a bow around one connector; None where that does not lie on it, or has no room there."""
+    def _bowed_rim(self, rim: RimCut, hinge: int, middle: FloatArray, radius: float) -> RimCut | None:
+        """A rim with a bow around one connector; None for one off the rim, or without room."""
         ring, bulges = rim.points, rim.bulges
         crossing = None if bulges is None else crossings(ring, bulges, middle, radius)
         if crossing is None or bulges is None:
@@ -403,7 +403,7 @@ class _Draft:
         if len(kept) < 2:
             return None
         self._outline_features.append(_Feature(np.stack([entry, exit_]), np.array([bulge]), hinge, False))
-        return Rim(np.concatenate([ring[kept], [entry, exit_]]), np.concatenate([bulges[kept], [bulge, 0.0]]))
+        return RimCut(np.concatenate([ring[kept], [entry, exit_]]), np.concatenate([bulges[kept], [bulge, 0.0]]))
 
     def in_the_way(self) -> tuple[set[int], set[int]]:
         """Hinges whose slits must turn within less room, and hinges that nothing can bow around."""
@@ -452,7 +452,9 @@ class _Draft:
 
     def _lines(self) -> npt.NDArray[np.object_]:
         """Centre lines of all pieces, then of the rims, with ``CHORDS`` chords for each arc."""
-        closed = [Rim(np.concatenate([rim.points, rim.points[:1]]), np.append(rim.bulges, 0.0)) for rim in self._rims]
+        closed = [
+            RimCut(np.concatenate([rim.points, rim.points[:1]]), np.append(rim.bulges, 0.0)) for rim in self._rims
+        ]
         drawn = [*self._made, *closed]
         points = [one.points for one in drawn]
         bulges = [np.zeros(len(one.points)) if one.bulges is None else one.bulges for one in drawn]
@@ -503,7 +505,7 @@ class _Draft:
         straight = tips - 0.5 * centres.span_mm[:, None] * centres.normal
         asides = straight_asides(self._seats)
         cuts = HingedCuts(tuple(self._made), tuple(self._seats), tuple(self._places), {}, flexure, asides, Counter())
-        rims = tuple(rim if np.any(rim.bulges) else Rim(rim.points) for rim in self._rims)
+        rims = tuple(rim if np.any(rim.bulges) else RimCut(rim.points) for rim in self._rims)
         there = ~np.isin(np.arange(len(self._straight)), self._removed)
         where = np.where(self._straight[:, None], straight, turned)
         return Arranged(cuts, rims, where, int(np.sum(self._straight & there)), widths)

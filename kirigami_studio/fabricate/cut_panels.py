@@ -95,7 +95,7 @@ def cut_panels(plan: CutPlan) -> CutPanels:
 
 
 def _lines(plan: CutPlan) -> tuple[npt.NDArray[np.object_], IntArray]:
-    """Centre lines of all cuts, tabs of the outline closed, and the number of the cut of each; -1 for rims."""
+    """Centre lines of all cuts, tabs closed, and the number of the cut of each; -1 for rims."""
     # Holes are of no cut, as the outline is.
     paths = [*plan.inner, *plan.on_layer(Layer.HOLES)]
     closed = [path for path in plan.on_layer(Layer.OUTLINE) if path.closed]

@@ -170,7 +170,7 @@ def trimmed_cuts(
 
 
 def _up_to_cuts(area: Polygon, sides: FloatArray, lines: FloatArray) -> Polygon:
-    """The area without the strips that cuts beside the sides (C, 2, 2) of its holes would leave along them."""
+    """The area less the strips between the sides (C, 2, 2) of its holes and the cuts beside."""
     rims = shapely.multilinestrings(list(area.interiors))
     near = shapely.buffer(shapely.linestrings(sides), ON_SIDE_MM, cap_style="flat")
     strips = []
@@ -187,7 +187,7 @@ def _up_to_cuts(area: Polygon, sides: FloatArray, lines: FloatArray) -> Polygon:
 
 
 def outline_around(area: Polygon, kerf_mm: float, straight_mm: float = STRAIGHT_MM) -> Polygon:
-    """What the centre lines of outline and holes enclose: the material grown by half a kerf, gaps within it closed.
+    """The area within the rims' centre lines: material and half a kerf, gaps in it closed.
 
     Vertices that are off a straight line by less than ``straight_mm`` are left out, and holes that are no wider than a
     hair.

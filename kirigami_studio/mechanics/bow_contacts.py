@@ -186,14 +186,14 @@ def _points(plane: ComplexArray) -> FloatArray:
 
 
 def panel_areas(panels: Sequence[FloatArray], kerf_mm: float) -> npt.NDArray[np.object_]:
-    """Shapes of panels (Q, 2) without half the kerf all round; empty for those that are not there."""
+    """Shapes of panels (Q, 2), half a kerf smaller all round; empty for missing ones."""
     return shapely.buffer(_polygons(panels), -0.5 * kerf_mm, join_style="mitre")
 
 
 def without_bends(
     areas: npt.NDArray[np.object_], panels: IntArray, connectors: SheetConnectors, kerf_mm: float
 ) -> npt.NDArray[np.object_]:
-    """Shapes (P,) of panels without the parts that bend at their connectors, which join ``panels`` (H, 2)."""
+    """Shapes (P,) of panels without the parts that bend at connectors of ``panels`` (H, 2)."""
     bends = _bends(connectors, kerf_mm)
     own: list[list[int]] = [[] for _ in areas]
     for connector, sides in enumerate(panels.tolist()):

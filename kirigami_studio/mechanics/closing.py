@@ -203,7 +203,7 @@ def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, m
 
 
 def covered_area(deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray) -> shapely.Polygon:
-    """Area, mm, of the sheet after a motion (P, 3): the union of all panels and voids, with what it leaves open inside.
+    """Area, mm, of all panels and voids after a motion (P, 3), with openings inside.
 
     Corners that panels share lie halfway between theirs where a connector is stretched.  Voids beside a trimmed panel
     are left out, because they may reach beyond it.

@@ -24,7 +24,9 @@ TRIED_BELOW = math.radians(150.0)
 
 
 def contacts_on_way(panels: Sequence[FloatArray], found: Closing, kerf_mm: float) -> Meetings:
-    """Find panels that run into each other on the way of a closing, hang together by no connector and have no stop.
+    """Find panels that run into each other on the way of a closing, and have no stop so far.
+
+    Panels that a connector joins are left out: their flanks have contacts of their own.
 
     Parameters
     ----------
@@ -57,7 +59,7 @@ class _Way:
         self._stops = network.stops
 
     def steps(self) -> dict[tuple[int, int], int]:
-        """Pairs of panels that meet, by their place in the network, and the step at which they are looked at.
+        """Pairs of panels that meet, by place in the network, and the step to look at.
 
         It is the first one at which they have met, or the last one where a corner of theirs is stopped already.
         """
@@ -78,7 +80,7 @@ class _Way:
     def corners(
         self, pair: tuple[int, int], step: int
     ) -> list[tuple[IntArray, FloatArray, FloatArray, FloatArray, int, float]]:
-        """The deepest corner of either panel in the other one as they have met, as the columns of :class:`Meetings`."""
+        """The deepest corner of either panel in the other, as the columns of :class:`Meetings`."""
         free, met = 0.0, 1.0  # shares of the way from the step before to this one
         for _ in range(HALVINGS):
             middle = 0.5 * (free + met)
@@ -102,9 +104,9 @@ class _Way:
                     normal * np.exp(-1j * motion[edge, 2]),
                 ]
             )
-            numbers = self._numbers[[edge, corner]]
-            row = numbers, *np.stack([places.real, places.imag], axis=1), at
-            rows.append((*row, self._angle(at, edge, corner, places, step)))
+            points = np.stack([places.real, places.imag], axis=1)
+            angle = self._angle(at, edge, corner, places, step)
+            rows.append((self._numbers[[edge, corner]], points[0], points[1], points[2], at, angle))
         return rows
 
     def _angle(self, at: int, edge: int, corner: int, places: ComplexArray, step: int) -> float:

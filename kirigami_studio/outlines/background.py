@@ -51,8 +51,9 @@ STEP = 0.5
 SOLID = 0.5
 #: Pixels (of the picture that is judged) by which a silhouette may shrink when its edge is sought midway.
 SHRINKS = 3.0
-#: Pixels around a silhouette that are blur, and share of it beside those from which on a paler part is told.
-HALO, FADES = 3, 0.01
+#: Pixels around a silhouette that are blur; share of its level from which on something is a paler part or a shadow
+#: (less is what JPEG adds), and of its area.
+HALO, PALEST, FADES = 3, 0.12, 0.01
 #: A page: share of the picture, share of a rectangle around it, lightness above its ground, and colourfulness.
 PAGE_SHARE, PAGE_FILLS, PAGE_LIGHTER, PAGE_CHROMA = 0.3, 0.97, 20.0, 12.0
 #: Share of a page that a shape on it has at least.
@@ -156,11 +157,9 @@ def level_of(distance: FloatArray, least: float) -> tuple[float, bool]:
     if most <= least:
         return middle, False
     best: tuple[float, float] | None = None
-    widest: BoolArray | None = None
     for level in np.geomspace(least, max(0.95 * most, least * 1.01), LEVELS).tolist():
         whole = silhouette(smooth, level)
         area = float(np.sum(whole))
-        widest = whole if widest is None else widest
         edge = whole & ~ndimage.binary_erosion(whole, border_value=1)
         if area < 16 or not edge.any():
             continue
@@ -175,15 +174,13 @@ def level_of(distance: FloatArray, least: float) -> tuple[float, bool]:
     if best is None or best[1] < LEAST_SHARP:
         return middle, False
     level = _midway(smooth, best[0], highest)
-    return level, best[1] >= SHARP and not _fades(smooth, level, widest)
+    return level, best[1] >= SHARP and not _fades(smooth, level, least)
 
 
-def _fades(smooth: FloatArray, level: float, widest: BoolArray | None) -> bool:
+def _fades(smooth: FloatArray, level: float, least: float) -> bool:
     """Whether a shadow or a paler part of the shape hangs together with a level's silhouette."""
     whole = silhouette(smooth, level)
-    if widest is None:
-        return False
-    beside = widest & ~ndimage.binary_dilation(whole, iterations=HALO)
+    beside = silhouette(smooth, max(least, PALEST * level)) & ~ndimage.binary_dilation(whole, iterations=HALO)
     return float(np.sum(beside)) > FADES * float(np.sum(whole))
 
 

@@ -104,7 +104,8 @@ def _ellipse(kind: str, words: list[str], corner: FloatArray, size: FloatArray, 
     if not min(radii) >= 0.0:
         return None
     angle = np.linspace(0.0, 2.0 * np.pi, ELLIPSE_VERTICES, endpoint=False)
-    return corner + middle + np.column_stack([radii[0] * np.cos(angle), radii[-1] * np.sin(angle)])
+    ring = np.column_stack([radii[0] * np.cos(angle), radii[-1] * np.sin(angle)])
+    return np.asarray(corner + middle + ring, dtype=np.float64)
 
 
 def _inset(

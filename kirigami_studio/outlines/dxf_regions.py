@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from ezdxf.acis import api
 from ezdxf.acis import entities as acis
+from ezdxf.acis.const import AcisException
+from ezdxf.acis.dxf import load_dxf
 from ezdxf.entities.dxfgfx import DXFGraphic
 from ezdxf.math import Matrix44, Vec3
 
@@ -55,9 +56,9 @@ def region_rings(entity: DXFGraphic) -> list[list[Vec3]] | None:
     A place inside an odd number of rings lies in the region.
     """
     try:
-        bodies = api.load_dxf(entity)
+        bodies = load_dxf(entity)
         rings = [ring for body in bodies for ring in _rings(body)]
-    except (api.AcisException, ValueError, TypeError, ArithmeticError, LookupError, AttributeError):
+    except (AcisException, ValueError, TypeError, ArithmeticError, LookupError, AttributeError):
         return None
     moved: Matrix44 | None = entity._temporary_transformation.get_matrix()  # type: ignore[attr-defined]
     rings = [ring if moved is None else list(moved.transform_vertices(ring)) for ring in rings]

@@ -411,7 +411,7 @@ class _Candidate:
 
 @lru_cache(maxsize=64)
 def panels_for_holes(target: Outline) -> float:
-    """How many panels a sheet needs so that holes and the walls around them are no smaller than panels allow."""
+    """Number of panels that holes and the walls beside them need."""
     if not target.holes:
         return 0.0
     widths = [2.0 * float(shapely.maximum_inscribed_circle(shapely.Polygon(hole)).length) for hole in target.holes]

@@ -66,7 +66,7 @@ def chosen_start(request: Request, trials: Trials = one_by_one) -> StartChoice:
 
 def _tried(request: Request, trials: Trials) -> StartChoice:
     plain = replace(request, start=_weighed(RECTANGLE, request))
-    sides, expected = sides_needed(request.target), predicted_for(plain).predicted_match
+    sides, expected = sides_needed(request.silhouette), predicted_for(plain).predicted_match
     if request.pinned or (sides < FEW_SIDES and expected >= EXPECTED):
         return StartChoice(plain.start, "start.few_corners", (("percent", 100.0 * expected),))
     worth = {RECTANGLE.name: _worth(plain, trials)}
@@ -91,7 +91,7 @@ def _weighed(start: StartShape, request: Request) -> StartShape:
 def _worth(request: Request, trials: Trials) -> float:
     """What short fits from the uniform sheet of a start reach: the best exact IoU, less the price of uneven panels."""
     grid = request.grid or predicted_for(request).grid
-    poses = first_angles(request.target, grid, 1, request.symmetry, request.start)
+    poses = first_angles(request.silhouette, grid, 1, request.symmetry, request.start)
     # Poses without a symmetry are tried too: symmetric ones come first.
     free = [pose for pose in poses if pose[1] is None]
     tasks = [TrialTask(grid, *pose, TRIAL) for pose in dict.fromkeys([*poses[: POSES - 1], *free[:POSES]])]

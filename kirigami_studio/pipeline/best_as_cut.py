@@ -103,7 +103,7 @@ def best_as_cut(
 
 
 def _next(left: Sequence[Candidate], ranking: Ranking, losses: Mapping[Candidate, float]) -> Candidate | None:
-    """The design to look at next of those that may be cut; None where none that is left could be better."""
+    """The design to look at next of those that are left; None where none could be better."""
     first = next(iter(ranking.ranked(left)), None)
     if first is None or first not in losses:
         return first

@@ -89,7 +89,7 @@ class Ranking:
     def of(cls, request: Request) -> Ranking:
         """As a request asks for it."""
         sizes = request.width_mm, request.least_feature_mm, request.least_gap_mm
-        return cls(request.regular, *sizes, trimmed_first=request.trim)
+        return cls(request.regular, *sizes, trimmed_first=request.trims)
 
     def wide_enough(self, candidate: Candidate) -> bool:
         """Whether all panels are as wide as the material needs them."""

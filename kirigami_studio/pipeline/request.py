@@ -187,12 +187,12 @@ class Request(DesignChoices):
 
     @property
     def silhouette(self) -> Outline:
-        """The target with its holes filled, which whole sheets are fitted to; holes are cut out of them."""
+        """The target with its holes filled, for the fits of whole sheets."""
         return self.target.filled
 
     @property
     def trims(self) -> bool:
-        """Whether its best designs are trimmed: where that is asked for, and where the target has holes."""
+        """Whether its best designs are trimmed: where asked for, and for a target with holes."""
         return self.trim or bool(self.target.holes)
 
     @property

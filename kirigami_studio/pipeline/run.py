@@ -80,7 +80,7 @@ TRIMMED = 3
 
 #: Designs that cover the target are made of the best that differ.
 COVERS = 2
-#: They are made in any case where no closed design of the run matches better than this.
+#: They are made in any case where no closed design of a run that was fitted to its end matches better than this.
 COVERED_BELOW = 0.97
 
 #: Seconds between two signs of life while fits are under way.
@@ -468,7 +468,7 @@ def needs_cover(request: Request, found: Sequence[Candidate]) -> bool:
     if no_closed_sheet_shows(request.silhouette, request.start):
         return True
     most = max((one.score.iou_exact for one in found if one.score.feasible), default=0.0)
-    return most < COVERED_BELOW and not request.trims
+    return most < COVERED_BELOW and request.polish >= 2 * FIRST_ROUND and not request.trims
 
 
 @dataclass(frozen=True, slots=True)

@@ -212,7 +212,7 @@ class CoverTask:
 
 
 def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:
-    """The filled target that a fit is to match, or the symmetric shape that it is meant to be, where asked for."""
+    """The filled target of a fit, or the symmetric shape that it stands for, where asked for."""
     if symmetry is None or request.symmetry not in (KeptSymmetry.MIRROR, KeptSymmetry.TURN):
         return request.silhouette
     return _meant(request.silhouette, request.chosen_grid, request.start, request.symmetry, symmetry, request.pinned)

@@ -22,7 +22,7 @@ import numpy as np
 import scipy.linalg
 
 from kirigami_studio.evaluate.feasibility import invalid_quads, path_contact
-from kirigami_studio.evaluate.pins import GAP_ROUNDING, least_pin_distance
+from kirigami_studio.evaluate.pins import RoomBound
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
@@ -95,9 +95,7 @@ class VertexDrag:
         self._z, self._here = self._start, self._outline
         self._slopes: FloatArray | None = None
         self._dual: _Dual | None = None
-        self._least_gap = 0.0
-        if least_gap > 0.0:
-            self._least_gap = min(least_gap, least_pin_distance(self._deployment)) - GAP_ROUNDING
+        self._room = RoomBound.of(self._deployment, least_gap) if least_gap > 0.0 else None
         self._guarded = self._is_physical(self._deployment)
 
     @property
@@ -204,7 +202,7 @@ class VertexDrag:
 
     def _is_physical(self, deployment: Deployment) -> bool:
         """Whether no quad is invalid at the angle, the way there is free, and pins keep apart."""
-        if self._least_gap > 0.0 and least_pin_distance(deployment) < self._least_gap:
+        if self._room is not None and not self._room.keeps(deployment):
             return False
         return not invalid_quads(deployment, self._model.phi) and path_contact(deployment, self._model.phi) is None
 

@@ -35,6 +35,13 @@ class TypedSize(StrEnum):
     FLAT = "flat"  #: width of the flat sheet
 
 
+class LengthUnit(StrEnum):
+    """Unit that fields for lengths show, and assume where none is typed."""
+
+    MILLIMETRES = "mm"
+    INCHES = "in"
+
+
 class MotionPreference(StrEnum):
     """Whether moving parts follow the desktop's setting for animations, or stand still."""
 
@@ -70,6 +77,7 @@ class Preferences:
     #: Whether the question for machine and material was answered, or declined.
     machine_asked: bool = field(default=False, metadata=_FLAG)
     motion: MotionPreference = field(default=MotionPreference.SYSTEM, metadata=_CHOICE)
+    unit: LengthUnit = field(default=LengthUnit.MILLIMETRES, metadata=_CHOICE)
 
     def __post_init__(self) -> None:
         check(self)

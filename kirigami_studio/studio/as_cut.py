@@ -57,6 +57,7 @@ from kirigami_studio.mechanics.connectors import (
     tip_asides,
 )
 from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
+from kirigami_studio.mechanics.gripping import panels_to_pin
 from kirigami_studio.mechanics.path_contacts import contacts_on_way
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
@@ -387,6 +388,21 @@ def estimate(
     figures = _both_figures(sheet, phi if outcome is Outcome.CLOSES else max(jam, phi))
     judged = survival(chosen, sheet.connectors.width_mm, *figures)
     return _made(jam, phi, outcome, largest, judged, Source.ESTIMATE)
+
+
+def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tuple[int, int]:
+    """Panels of a pinned sheet, row by row, to hold and to pull: where its softest motions are largest.
+
+    Pins bend nothing and leave one motion, so that one of each is enough.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    sheet = _unplanned_sheet(deployment, settings, material_for(settings))
+    held, pulled = panels_to_pin(deployment, sheet, settings.width_mm, 2)
+    return held, pulled
 
 
 def motion_on_pins(phi: float, iou: float | None = None) -> AsCut:

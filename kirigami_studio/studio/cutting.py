@@ -91,7 +91,7 @@ def plan_sheet(
     """
     tiles = None
     if is_backed(settings):
-        tiles = TileSizes(settings.gap_mm, least_mm=least_tile_mm(material_for(board_layer(settings))))
+        tiles = TileSizes(settings.gap_mm, least_mm=_board_tile_mm(settings))
     settings = hinge_layer(settings)
     machine = named_machine(settings)
     plan = plan_cuts(
@@ -145,6 +145,8 @@ def check_connectors(candidate: Candidate, options: CutOptions) -> None:
 #: or stretch: at 1 mm on sheets of 100 mm, designs of a heart, a butterfly and a gear cannot be cut without this room,
 #: and close with it.
 ROOM_IN_WIDTHS = 2.75
+#: Panels have room for their least tile times this: bows reach into panels, and tiles with narrower necks are left out.
+TILE_ROOM = 1.1
 
 
 def least_feature_mm(settings: FabricationSettings) -> float:
@@ -162,8 +164,13 @@ def least_feature_mm(settings: FabricationSettings) -> float:
     least = max(material.min_ligament_mm, material.min_panel_mm)
     if is_backed(settings):
         relief = float(flexure_length(np.array(_connector_mm(cut, material)), kerf_mm(cut, material)))
-        least = max(least, least_tile_mm(material_for(board_layer(settings))) + 2.0 * max(settings.gap_mm, relief))
+        inset, tile = TileSizes(settings.gap_mm).inset_mm(kerf_mm(cut, material)), _board_tile_mm(settings)
+        least = max(least, tile + 2.0 * relief, TILE_ROOM * tile + 2.0 * inset)
     return least + kerf_mm(cut, material)
+
+
+def _board_tile_mm(settings: FabricationSettings) -> float:
+    return least_tile_mm(material_for(board_layer(settings)))
 
 
 def least_tile_mm(board: Material) -> float:

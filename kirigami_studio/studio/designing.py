@@ -260,6 +260,7 @@ def why_covered(candidates: Sequence[Candidate], target: Outline | None, start: 
         return None
     closed, cover = best[Family.CLOSED], best[Family.COVER]
     figures = {"closed": 100.0 * closed.match, "cover": 100.0 * cover.match, "given_up": 100.0 * cover.given_up}
+    target = target.filled
     back = turn_back(target)
     if back.angle >= TURNS_BACK:
         low, high = target.points.min(axis=0), target.points.max(axis=0)

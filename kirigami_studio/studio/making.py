@@ -287,6 +287,7 @@ class MadePieces:
     made: Assembled
     job: AssemblyJob | PrintJob
     verdict: Verdict
+    grips: tuple[int, int]  #: panels to hold and to pull, row by row
 
     @property
     def report(self) -> PinnedReport:
@@ -300,8 +301,10 @@ class MadePieces:
 
         cut = self.cutting
         if cut is None:
-            return PosedPieces.of(self.made.plan, self.job.material, holds=self.made.held.places)
-        return PosedPieces.of(self.made.plan, cut.material, cut.fastener, self.made.held.places)
+            found = PosedPieces.of(self.made.plan, self.job.material, holds=self.made.held.places)
+        else:
+            found = PosedPieces.of(self.made.plan, cut.material, cut.fastener, self.made.held.places)
+        return replace(found, grips=self.grips)
 
     @cached_property
     def on_board(self) -> PosedPieces:
@@ -379,6 +382,7 @@ def pieces_of(request: CutRequest) -> MadePieces:
     FabricationError, UsageError
         No such material, or sizes that do not go together.
     """
+    from kirigami_studio.studio.as_cut import grips_on_pins
     from kirigami_studio.studio.assembling import assembled
     from kirigami_studio.studio.verdict import judge_assembled
 
@@ -389,7 +393,9 @@ def pieces_of(request: CutRequest) -> MadePieces:
     shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
     verdict = judge_assembled(request.candidate, made, settings)
     job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
-    return MadePieces(made, job, verdict)
+    grips = grips_on_pins(made.assembly.deployment, settings)
+    names = [made.assembly.pieces[panel].id for panel in grips]
+    return MadePieces(made, replace(job, grips=(names[0], names[1])), verdict, grips)
 
 
 def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> PrintJob:
@@ -790,6 +796,8 @@ def written(
         verified, files = tuple(found_in_files), tuple(places)
     else:
         job, verified = replace(job, verdict=judged(request, made, as_cut).level.value), ()
+        if motion is None and made.layers is not None and not kind_of(path.suffix.lower()).cuts:
+            job = replace(job, pieces=posed_pieces(request))
         files = export_files(job, path)
     verdict = judged(request, made, as_cut, verified)
     place = files[0]

@@ -19,6 +19,7 @@ from kirigami_studio.gui.make.cut_view import CutOverlay
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks
 from kirigami_studio.gui.widgets.fitted_text import BRIEF, CONTROLS, TOOLTIP_LINE, wrapped
+from kirigami_studio.gui.widgets.number_field import LengthField
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -299,3 +300,30 @@ def test_that_no_menu_is_higher_than_a_small_screen(designed: MainWindow) -> Non
     assert len(menus) > 8
     for menu in menus:
         assert menu.sizeHint().height() <= 720, menu.title()
+
+
+@pytest.fixture
+def millimetres_afterwards() -> Iterator[None]:
+    """Show millimetres in the windows of other tests."""
+    yield
+    LengthField.assumed = ""
+
+
+@pytest.mark.usefixtures("millimetres_afterwards")
+def test_that_one_switch_shows_and_reads_inches_in_all_fields(designed: MainWindow, tmp_path: Path) -> None:
+    designed.services.preferences.use(tmp_path / "preferences.toml")
+    connector, width = designed.fabrication.lengths["connector_mm"], designed.target.refine.width_
+    before, plain = connector.value(), (connector.text(), width.text())
+    designed.commands["inches"].trigger()
+    assert designed.commands["inches"].isChecked() and "in" in (tmp_path / "preferences.toml").read_text("utf-8")
+    assert connector.text() == f'{before / 25.4:.4f}"' and width.text().endswith(" in")
+    assert connector.value() == before and designed.session.document.fabrication.connector_mm is None
+    flat = designed.fabrication.lengths["width_mm"]
+    for typed, millimetres in (("5", 127.0), ("100 mm", 100.0), ("4", 101.6)):
+        flat.setFocus()
+        flat.selectAll()
+        QTest.keyClicks(flat, typed)
+        QTest.keyClick(flat, Qt.Key.Key_Return)
+        assert flat.value() == pytest.approx(millimetres)
+    designed.commands["inches"].trigger()
+    assert (connector.text(), width.text().endswith(" mm")) == (plain[0], True)

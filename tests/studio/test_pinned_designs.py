@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,6 +14,7 @@ import ezdxf
 import ezdxf.math
 import pytest
 from PIL import Image
+from pypdf import PdfReader
 
 import kirigami_studio as ks
 from kirigami_studio.__main__ import main
@@ -48,6 +50,7 @@ from kirigami_studio.studio.making import (
     planning,
     printed_job,
     timing,
+    written_pieces,
 )
 from kirigami_studio.studio.verdict import Level, look_at
 from tests.pinned_assemblies import plain_pinwheel
@@ -342,3 +345,17 @@ def test_that_a_close_look_ends_where_a_piece_falls_apart(pinwheel: Document, mo
     monkeypatch.setattr("kirigami_studio.assembly.pinned.extend_to", None)  # rims are not shaped any more
     refusal = look_at(pinwheel.candidates[0], large, pinwheel.target).refusal
     assert refusal is not None and refusal.text == problem.text
+
+
+def test_that_assembly_sheet_and_stage_say_where_to_hold_and_pull(
+    pinwheel: Document, made: MadePieces, tmp_path: Path
+) -> None:
+    held, pulled = (made.made.assembly.pieces[panel].id for panel in made.grips)
+    assert held != pulled and made.posed.grips == made.grips
+    written_pieces(CutRequest.of(pinwheel), Output(tmp_path / "files", "cut"))
+    pages = [page.extract_text() for page in PdfReader(tmp_path / "files" / "assembly.pdf").pages]
+    assert f"hold {held}, pull {pulled}" in pages[0]
+    # Pulled apart, or pushed together: the way is never a turn alone.
+    poses = [made.made.assembly.poses(phi)[list(made.grips), :2] for phi in (math.pi, 0.75 * math.pi)]
+    apart = [math.dist(*pose) for pose in poses]
+    assert abs(apart[1] - apart[0]) > 1.0

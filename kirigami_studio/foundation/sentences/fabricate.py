@@ -549,9 +549,8 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "hold.nothing_meets_flat": mark("Nothing keeps the sheet flat: no edges meet there that are long enough."),
     "pinned.not_made": mark("The pieces of this design could not be made ({reason:.200}). Choose another design."),
     "pinned.target_has_holes": mark_n(
-        "Pieces on pins show no holes so far, and the target has {count}. Fill it, or make one sheet or a backed one.",
-        "Pieces on pins show no holes so far, and the target has {count}. Fill them, or make one sheet or a backed "
-        "one.",
+        "Pieces on pins show no holes so far, and the target has {count}. Fill it, or make it one sheet or backed.",
+        "Pieces on pins show no holes so far, and the target has {count}. Fill them, or make it one sheet or backed.",
     ),
     "pinned.falls_apart": mark_n(
         "Piece {piece} falls apart: the ears of its neighbours cut it through. Make the ears smaller or the sheet "

@@ -83,7 +83,7 @@ class CutDrawing:
 
     @cached_property
     def sheet(self) -> QPainterPath:
-        """The finished sheet's area: inside of the outline, which tabs may have parted, less the holes."""
+        """The finished sheet: the inside of its outline, tabs or not, less the holes."""
         sheet = line_path(_ring([path.flattened for path in self.plan.on_layer(Layer.OUTLINE)]), closed=True)
         for hole in self.plan.on_layer(Layer.HOLES):
             sheet.addPath(line_path(hole.flattened, closed=True))

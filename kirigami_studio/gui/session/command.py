@@ -42,6 +42,7 @@ class WindowState:
     dark: bool
     follows_system: bool
     still: bool  #: nothing moves by itself
+    inches: bool  #: fields for lengths show inches
 
     @property
     def can_change_design(self) -> bool:

@@ -74,7 +74,9 @@ def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
 
 
 #: Why a gesture goes no further.
-PINS_STOP_IT = mark("It stops here, where pins are as near to each other as their ears allow.")
+PINS_STOP_IT = mark(
+    "It stops here, where pins are as near to each other as their ears allow, or necks between their ears as narrow."
+)
 #: Ratios that can be given by hand, the same as those of the generator and the fits.
 SMALLEST, LARGEST = 10.0**-LOG_RATIO_LIMIT, 10.0**LOG_RATIO_LIMIT
 #: Share of a slit by which the motion of a void's corners is measured.

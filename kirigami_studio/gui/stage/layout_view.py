@@ -434,6 +434,10 @@ class LayoutView(Canvas):
     def _paint_pieces(self, painter: QPainter, transform: ViewTransform, pieces: PosedPieces) -> None:
         self.areas, self.faults = None, ()
         paint_pieces(painter, pieces, self.phi, transform, self.palette_)
+        if pieces.grips is not None and Overlay.GRIPS in self.overlays:
+            held, pulled = pieces.grips
+            places = grip_places(pieces.design, (held,), (pulled,), self.phi, pieces.design.phi_target)
+            paint_grips(painter, places, transform, self.palette_)
         nearness = self._nearness
         if self._target is not None and Overlay.TARGET in self.overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))
@@ -496,6 +500,12 @@ class LayoutView(Canvas):
         state, palette, found = self._grips, self.palette_, self.grips
         if Overlay.GRIPS not in self.overlays:
             return []
+        if self._pieces is not None and self._pieces.grips is not None:
+            held, pulled = (self._pieces.assembly.pieces[panel].id for panel in self._pieces.grips)
+            return [
+                Chip((palette.text,), tr("hold {piece}", piece=held)),
+                Chip((palette.good,), tr("pull {piece}", piece=pulled)),
+            ]
         if found is None:
             if state.busy:
                 return [Chip((), tr("Looking for where to hold and pull …"))]

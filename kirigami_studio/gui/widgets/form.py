@@ -10,8 +10,9 @@ from PySide6.QtWidgets import QCheckBox, QLayout, QSpinBox, QVBoxLayout, QWidget
 
 from kirigami_studio.foundation.settings import NamedSetting, settings_of
 from kirigami_studio.foundation.words import tr
-from kirigami_studio.gui.widgets.card import captioned, compact
+from kirigami_studio.gui.widgets.card import compact
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox, Choices
+from kirigami_studio.gui.widgets.layouts import column, label
 from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField, number_field
 
 #: A field of a form.
@@ -98,9 +99,9 @@ class Form(QObject):
     def captioned(self, name: str, content: QWidget | QLayout | None = None) -> QVBoxLayout:
         """A field that was made below the caption of its setting, alone or within ``content``."""
         caption = "" if isinstance(self.fields[name], QCheckBox) else tr(self.settings[name].setting.label)
-        layout = captioned(caption, self.fields[name], self.fields[name] if content is None else content)
-        self._captions[name] = layout.itemAt(0).widget()
-        return layout
+        words, field = label(caption, self.fields[name]), self.fields[name]
+        self._captions[name] = words
+        return column(words, field if content is None else content, spacing=3)
 
     def offer(self, names: Iterable[str], on: bool) -> None:
         """Show fields with their captions, or take them away."""

@@ -11,6 +11,7 @@ from PySide6.QtGui import QKeyEvent, QValidator
 from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QSlider, QWidget
 
 from kirigami_studio.foundation.units import MM_PER_INCH
+from kirigami_studio.foundation.words import tr
 
 #: Keys that, with Ctrl, mean something to the window: undo, redo and export.  A field keeps undo while it is typed in.
 WINDOW_KEYS = (Qt.Key.Key_Z, Qt.Key.Key_Y, Qt.Key.Key_E)
@@ -84,6 +85,8 @@ class DecimalField(QDoubleSpinBox):
 
     #: Factor to the field's own unit of each unit that may be typed.
     units: Mapping[str, float] = {}
+    #: Unit of numbers that are typed without one; "" for the field's own.
+    assumed = ""
 
     def validate(self, text: str, position: int) -> Answer:
         """Say whether a text can be, or can become, a number (Qt's own call)."""
@@ -118,7 +121,7 @@ class DecimalField(QDoubleSpinBox):
         if found is None:
             return None
         number, stroke, divisor, unit = (part or "" for part in found.groups())
-        return number, stroke, divisor, unit.lower()
+        return number, stroke, divisor, unit.lower() or self.assumed
 
     def _value(self, parts: tuple[str, str, str, str]) -> float | None:
         number, stroke, divisor, unit = parts
@@ -142,9 +145,28 @@ class DecimalField(QDoubleSpinBox):
 
 
 class LengthField(DecimalField):
-    """A length in mm that may be typed as ``3 in``, ``3/8"``, ``8.5 cm`` or ``50 um``; it shows mm."""
+    """A length in mm that may be typed as ``3 in``, ``3/8"``, ``8.5 cm`` or ``50 um``; it shows mm, or inches."""
 
     units = LENGTH_UNITS
+
+    def setSuffix(self, suffix: str) -> None:  # noqa: N802 - Qt's name
+        """Set the unit that stands behind the number, if one does: that of all lengths."""
+        super().setSuffix(suffix and (tr(" in") if self.assumed else tr(" mm")))
+
+    def textFromValue(self, value: float) -> str:  # noqa: N802 - Qt's name
+        """Write a length in the unit of all lengths (Qt's own call)."""
+        if not self.assumed:
+            return super().textFromValue(value)
+        inches = self.locale().toString(value / LENGTH_UNITS["in"], "f", self.decimals() + 2)
+        return inches if self.suffix() else f'{inches}"'
+
+
+def show_lengths(root: QWidget, inches: bool) -> None:
+    """Let all fields for lengths, those below a widget at once, show and read inches, or mm again."""
+    LengthField.assumed = "in" if inches else ""
+    for field in root.findChildren(LengthField):
+        field.setSuffix(field.suffix())
+        field.setDecimals(field.decimals())  # or the text would stay
 
 
 Field = TypeVar("Field", bound=DecimalField)

@@ -15,8 +15,9 @@ from kirigami_studio.gui.session.messages import Message
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.widgets import theme
+from kirigami_studio.gui.widgets.number_field import show_lengths
 from kirigami_studio.gui.widgets.theme import Palette
-from kirigami_studio.project.preferences import Theme
+from kirigami_studio.project.preferences import LengthUnit, Theme
 
 
 class Appearance(QObject):
@@ -90,12 +91,24 @@ class Appearance(QObject):
         QGuiApplication.styleHints().colorSchemeChanged.connect(self.refresh)
 
     def refresh(self) -> None:
-        """Show the theme that the preferences ask for."""
+        """Show the theme and the unit that the preferences ask for."""
+        show_lengths(self._window, self.in_inches)
         palette = theme.PALETTES.get(self._preferences.present.theme) or theme.system_palette()
         if palette is not self.palette:
             self.set_theme(palette)
         else:
             self.changed.emit(palette)
+
+    @property
+    def in_inches(self) -> bool:
+        """Whether fields for lengths show inches."""
+        return self._preferences.present.unit is LengthUnit.INCHES
+
+    def switch_unit(self) -> None:
+        """Show lengths in inches, or in mm again."""
+        unit = LengthUnit.MILLIMETRES if self.in_inches else LengthUnit.INCHES
+        self._preferences.keep(replace(self._preferences.present, unit=unit))
+        show_lengths(self._window, self.in_inches)
 
     def switch(self) -> None:
         """Change between light and dark; the choice stays until the desktop is to be followed again."""

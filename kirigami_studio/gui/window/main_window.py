@@ -219,6 +219,7 @@ class MainWindow(QMainWindow):
             ideal=Switch(stage.deployment.slider.jam is not None, stage.deployment.ideal.isChecked()),
             dark=self.appearance.palette.dark,
             follows_system=self.appearance.follows_system,
+            inches=self.appearance.in_inches,
             still=services.preferences.present.motion == "still",
         )
 

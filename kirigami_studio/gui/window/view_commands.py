@@ -182,12 +182,14 @@ def _themes(appearance: Appearance, switch_motion: Callable[[], None]) -> tuple[
         tr("Nothing moves by itself, such as the sample on the first page"),
     )
     dark, tip = tr("Dark t&heme"), tr("Switch between light and dark")
+    inches = tr("Fields show lengths in inches; mm can still be typed, as 25 mm")
     followed, still = attrgetter("follows_system"), attrgetter("still")
     system, match = tr("Follow the s&ystem"), tr("Match the system theme")
     return (
         command("theme", dark, tip, appearance.switch, "Ctrl+Alt+D", "moon", worded=_theme_wording),
         command("theme_system", system, match, appearance.follow_system, checked_when=followed),
         command("still", tr("Reduce motion"), motion, switch_motion, checked_when=still),
+        command("inches", tr("Lengths in &inches"), inches, appearance.switch_unit, checked_when=attrgetter("inches")),
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import PictureFrame, draw_polygons
 from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_of
@@ -53,8 +53,24 @@ class Made:
 
     @property
     def best_match(self) -> Candidate:
-        """The feasible candidate of the highest exact IoU, whatever its sheet looks like."""
-        return min(self.candidates or (self.best,), key=lambda one: (not one.score.feasible, -one.score.iou_exact))
+        """The feasible closed candidate of the highest exact IoU, whatever its sheet looks like."""
+        closed = [one for one in self.candidates if one.origin is not Origin.COVERED] or [self.best]
+        return min(closed, key=lambda one: (not one.score.feasible, -one.score.iou_exact))
+
+    @property
+    def closed(self) -> Candidate:
+        """The first that was not made to cover the target; where designs were trimmed, it is trimmed too."""
+        return next((one for one in (self.best, *self.candidates) if one.origin is not Origin.COVERED), self.best)
+
+    @property
+    def covers(self) -> tuple[Candidate, ...]:
+        """Designs that cover the target, best first."""
+        return tuple(one for one in self.candidates if one.origin is Origin.COVERED)
+
+    @property
+    def best_of_families(self) -> Candidate:
+        """The first closed design or the first that covers the target, whichever matches better."""
+        return max((self.closed, *self.covers[:1]), key=lambda one: one.match)
 
 
 def make_designs(
@@ -94,7 +110,7 @@ def design_alone(choices: Sequence[Request]) -> Made:
 
 
 def design_figures(made: Sequence[Made]) -> dict[str, object]:
-    """Figures over all targets, and one line for each.
+    """Figures over all targets, and one line for each; of the first closed design where nothing else is said.
 
     Returns
     -------
@@ -107,10 +123,11 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
         worst and its name, ``expected_off`` and ``expected_within_5_points`` (mean difference, and share of targets,
         between the match that was expected before the run and that of the first design, where grids were chosen),
         ``at_limit`` (share of ratios), ``symmetric`` and ``cuttable`` (shares of targets),
-        ``best_match``: the same of the candidate of the highest exact IoU in the place of the first, and ``shapes``:
-        the figures of each target by name.
+        ``best_of_families``: the same of the closed or covering design that matches better, and what was ``covered``,
+        ``best_match``: the same of the closed candidate of the highest exact IoU in the place of the first, and
+        ``shapes``: the figures of each target by name.
     """
-    scores = [one.best.score for one in made]
+    scores = [one.closed.score for one in made]
     figures: dict[str, object] = {
         "targets": len(made),
         **_summary("iou_exact", [score.iou_exact for score in scores], made),
@@ -119,14 +136,22 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
         "uniform_iou": float(np.mean([score.uniform_iou for score in scores])),
         "siou_gain": float(np.mean([score.siou_gain for score in scores])),
         "siou_gain_interval": bootstrap_interval(np.array([score.siou_gain for score in scores])),
-        "below_uniform": [one.target.name for one in made if one.best.score.siou_gain < 0],
+        "below_uniform": [one.target.name for one in made if one.closed.score.siou_gain < 0],
         "below_uniform_exact": [
-            one.target.name for one in made if one.best.score.iou_exact < one.best.score.uniform_iou
+            one.target.name for one in made if one.closed.score.iou_exact < one.closed.score.uniform_iou
         ],
         "worst": [one.target.name for one in worst_of(made, WORST_LISTED)],
         "success": float(np.mean([score.siou >= SUCCESS_SIOU and score.feasible for score in scores])),
         "tv": float(np.mean([score.tv for score in scores])),
-        **_sheet_figures([one.best for one in made], made),
+        **_sheet_figures([one.closed for one in made], made),
+        "best_of_families": {
+            **_summary("match", [one.best_of_families.match for one in made], made),
+            "covered": {
+                one.target.name: {"match": one.covers[0].match, "given_up": one.covers[0].given_up}
+                for one in made
+                if one.covers
+            },
+        },
         "best_match": {
             **_summary("iou_exact", [one.best_match.score.iou_exact for one in made], made),
             "tv": float(np.mean([one.best_match.score.tv for one in made])),
@@ -135,7 +160,7 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
         "seconds": float(np.mean([one.seconds for one in made])),
         "evaluations": float(np.mean([one.evaluations for one in made])),
     }
-    trimmed = [one.best.trim.iou for one in made if one.best.trim is not None]
+    trimmed = [one.best.trim.iou for one in made if one.best.trim is not None and one.request.trims]
     if len(trimmed) == len(made):
         figures |= _summary("trimmed_iou", trimmed, made)
     off = [abs(score.iou_exact - told) for one, score in zip(made, scores, strict=True) if (told := _expected(one))]
@@ -147,13 +172,13 @@ def design_figures(made: Sequence[Made]) -> dict[str, object]:
 
 def worst_of(made: Sequence[Made], count: int) -> list[Made]:
     """The ``count`` designs with the lowest sIoU, lowest first."""
-    return sorted(made, key=lambda one: one.best.score.siou)[:count]
+    return sorted(made, key=lambda one: one.closed.score.siou)[:count]
 
 
 def shape_figures(one: Made) -> dict[str, object]:
     """The line of one target."""
-    score = one.best.score
-    symmetry, even, most = one.best.symmetry, score.evenness, one.best_match.score
+    score = one.closed.score
+    symmetry, even, most = one.closed.symmetry, score.evenness, one.best_match.score
     line: dict[str, object] = {
         "grid": f"{one.request.chosen_grid[0]}x{one.request.chosen_grid[1]}",
         "iou_exact": score.iou_exact,
@@ -172,7 +197,9 @@ def shape_figures(one: Made) -> dict[str, object]:
     }
     if expected := _expected(one):
         line["expected_iou"] = expected
-    if one.best.trim is not None:
+    if one.covers:
+        line["cover"] = {"match": one.covers[0].match, "given_up": one.covers[0].given_up}
+    if one.best.trim is not None and one.request.trims:
         line |= {"trimmed_iou": one.best.trim.iou, "removed_share": one.best.trim.removed_share}
     return line
 
@@ -230,23 +257,30 @@ def write_contact_sheet(made: Sequence[Made], path: Path, states: bool = False) 
 
 def _tiles(one: Made) -> list[Tile]:
     grid = f"{one.request.chosen_grid[0]} x {one.request.chosen_grid[1]}"
-    plain = replace(one.best, trim=None)
+    plain = replace(one.closed, trim=None)
     agreement = f"IoU {plain.score.iou_exact:.3f} (uniform {plain.score.uniform_iou:.3f})"
     tiles = [(_picture_of(plain, one), (f"{one.target.name}, {grid}", agreement))]
-    if one.best.trim is not None:
-        tiles.append((_picture_of(one.best, one), ("trimmed", f"IoU {one.best.trim.iou:.3f}")))
+    cut = one.best if one.best.trim is not None else next(iter(one.covers), None)
+    if cut is not None:
+        words = f"IoU {cut.match:.3f}, {100 * cut.given_up:.0f} % cut away"
+        tiles.append((_picture_of(cut, one), ("covered" if cut.origin is Origin.COVERED else "trimmed", words)))
     return tiles
 
 
 def _state_tiles(one: Made) -> list[Tile]:
     """The flat sheet, half way, and the sheet over its target."""
-    score, job = one.best.score, ExportJob.of(one.best, one.target.points)
+    return [tile for design in (one.closed, *one.covers[:1]) for tile in _three_states(design, one)]
+
+
+def _three_states(design: Candidate, one: Made) -> list[Tile]:
+    score, job = design.score, ExportJob.of(design, one.target.points)
     states = [job.posed.parts(phi) for phi in (math.pi, 0.5 * (math.pi + job.phi), job.phi)]
     frame = PictureFrame.around([*states[0], *states[1], *states[2], one.target.points], STATE_TILE)
-    symmetry = one.best.symmetry
+    symmetry, (rows, columns) = design.symmetry, one.request.chosen_grid
+    beside = f"uniform {score.uniform_iou:.3f}" if design.trim is None else f"{100 * design.given_up:.0f} % cut away"
     lines = (
-        (one.target.name, f"{one.request.chosen_grid[0]} x {one.request.chosen_grid[1]}"),
-        (f"IoU {score.iou_exact:.3f}", f"uniform {score.uniform_iou:.3f}"),
+        (one.target.name, f"{rows} x {columns}" if design.trim is None else "covered"),
+        (f"IoU {design.match:.3f}", beside),
         (f"CV {score.evenness.area_cv:.2f}", "" if symmetry is None else symmetry.label.replace("_", " ")),
     )
     targets = (None, None, one.target.points)

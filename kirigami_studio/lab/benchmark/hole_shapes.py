@@ -44,7 +44,7 @@ def _ring(share: float) -> BaseGeometry:
 
 
 def _arc(x: float, y: float, across: float, up: float, first: float, last: float) -> FloatArray:
-    """Points (49, 2) of an arc about (x, y) with half axes ``across`` and ``up``, from and to angles in degrees."""
+    """Points (49, 2) of an arc about (x, y) with two half axes, between angles in degrees."""
     angle = np.radians(np.linspace(first, last, 49))
     return np.stack([x + across * np.cos(angle), y + up * np.sin(angle)], axis=1)
 

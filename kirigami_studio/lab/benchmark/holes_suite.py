@@ -1,4 +1,4 @@
-"""Targets with holes designed: match with the holes counted, and how the sheets do as cut in film."""
+"""Targets with holes: their match, holes counted, as designed and as cut in film."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def design_holes(
     width_mm: float,
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> list[HoleDesign]:
-    """Design the drawn targets with holes, all or those of these names, on grids of the run's choice, and cut them.
+    """Design and cut the drawn targets with holes, all or some, on grids of the run's choice.
 
     Parameters
     ----------

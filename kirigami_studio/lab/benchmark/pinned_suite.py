@@ -1,4 +1,4 @@
-"""Pinned designs made: the match of their pieces in both end states, and whether the pieces can be put together."""
+"""Pinned designs as pieces: match in both end states, walls, necks, and the motion."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ def design_pinned(
     starts: Sequence[StartShape] = (RECTANGLE,),
     report: Callable[[int, int], None] = lambda done, total: None,
 ) -> PinnedTable:
-    """Design every target from every start with pins, as the window does, and make the pieces of the best.
+    """Design every target from every start on pins, and make the pieces of the best.
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ def design_pinned(
 
 
 def _made(best: Candidate, ranking: Ranking, target: Outline, cut: FabricationSettings, looked_at: int) -> PinnedDesign:
-    """Figures of a design and of its pieces; those of the pieces say nothing where there are none."""
+    """Figures of a design and of its pieces; the latter are 0 where there are none."""
     rows, columns = best.sheet.grid
     score = best.score
     one = PinnedDesign(

@@ -1,4 +1,4 @@
-"""Shapes in every bundled material, as ``design --material`` makes them, and in other constructions where it must."""
+"""Shapes in every bundled material, as ``design --material`` makes them and otherwise."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ Report = Callable[[int, int], None]
 
 @dataclass(frozen=True, slots=True)
 class Making:
-    """A construction of a material, the width of its flat sheet, and of how many designs the best is taken."""
+    """A construction, the width of the flat sheet, and the number of designs to choose from."""
 
     construction: Construction
     width_mm: float
@@ -66,9 +66,9 @@ class PresetRun:
     def settings(self) -> FabricationSettings:
         """As ``design`` gets them."""
         making = self.making
-        chosen = {"construction": making.construction, "width_mm": making.width_mm}
         if making == usual_making(self.material, making.k):
-            chosen = {}
+            return new_settings({"material": self.material.key})
+        chosen = {"construction": making.construction, "width_mm": making.width_mm}
         return new_settings({"material": self.material.key, **chosen})
 
     @property
@@ -180,7 +180,7 @@ class PresetFigures:
 
     @property
     def ok(self) -> bool:
-        """Whether every sheet works or was warned of, and all needed shapes are ready in some construction."""
+        """Whether all sheets work or were warned of, and no needed shape is a hole."""
         return not self.holes and all(sheet.works or sheet.material in self.notes for sheet in self.sheets)
 
     @property
@@ -190,14 +190,14 @@ class PresetFigures:
         return tuple(one for one in self.sheets if one.shape in NEEDED and (one.material, one.shape) not in made)
 
     def sentences(self) -> list[str]:
-        """The table, one row a material, in Markdown; sentences before a run; what is ready in no construction."""
+        """The table in Markdown, sentences before a run, and the holes."""
         said = [f"{key}: {note}" for key, note in self.notes.items()]
         holes = [f"not ready: {sheet.shape} in {sheet.material}: {', '.join(sheet.codes)}" for sheet in self.holes]
         return [*self.table, *said, *holes]
 
     @property
     def table(self) -> list[str]:
-        """One row a material, in Markdown; a cell has the first construction that is ready beside the usual one."""
+        """One row a material, in Markdown; cells end with the first construction that is ready."""
         shapes = list(dict.fromkeys(sheet.shape for sheet in self.sheets))
         rows: dict[str, dict[str, PresetSheet]] = {}
         for sheet in self.sheets:
@@ -259,7 +259,7 @@ def measure_presets(
     into: str | None = None,
     report: Report = lambda done, total: None,
 ) -> PresetFigures:
-    """Design every shape in every material as usual, and otherwise where that is not ready; judge the best of each.
+    """Design every shape in every material as usual, and otherwise where that is not ready.
 
     Parameters
     ----------
@@ -355,8 +355,8 @@ def judged_preset(run: PresetRun) -> PresetSheet:
     except KirigamiError as error:
         return PresetSheet(*named, Level.FAILS.value, *made, (error.code,), best.sheet.grid)
     codes = tuple(problem.code for problem in found.problems)
-    figures = {} if found.as_cut is None else _figures(found.as_cut)
-    return PresetSheet(*named, found.level.value, *made, codes, best.sheet.grid, **figures)
+    sheet = PresetSheet(*named, found.level.value, *made, codes, best.sheet.grid)
+    return sheet if found.as_cut is None else _with_figures(sheet, found.as_cut)
 
 
 def _judged(best: Candidate, settings: FabricationSettings, target: Outline) -> Verdict:
@@ -365,13 +365,14 @@ def _judged(best: Candidate, settings: FabricationSettings, target: Outline) -> 
     return assess(best, settings, target).verdict
 
 
-def _figures(as_cut: AsCut) -> dict[str, float | str]:
+def _with_figures(sheet: PresetSheet, as_cut: AsCut) -> PresetSheet:
     judged = as_cut.survival
-    return {
-        "jam_deg": math.degrees(as_cut.jam_phi),
-        "strain": judged.strain,
-        "strain_limit": judged.limit,
-        "figure": judged.figure.value,
-        "iou": math.nan if as_cut.ideal_iou is None else as_cut.ideal_iou,
-        "iou_as_cut": math.nan if as_cut.iou is None else as_cut.iou,
-    }
+    return replace(
+        sheet,
+        jam_deg=math.degrees(as_cut.jam_phi),
+        strain=judged.strain,
+        strain_limit=judged.limit,
+        figure=judged.figure.value,
+        iou=math.nan if as_cut.ideal_iou is None else as_cut.ideal_iou,
+        iou_as_cut=math.nan if as_cut.iou is None else as_cut.iou,
+    )

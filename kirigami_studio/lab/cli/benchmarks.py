@@ -537,7 +537,7 @@ def starts(arguments: argparse.Namespace) -> int:
 
 
 def holes(arguments: argparse.Namespace) -> int:
-    """Drawn targets with holes, designed and cut; 1 when a hole stays closed or a sheet falls apart."""
+    """Targets with holes, designed and cut; 1 for a hole that is closed or a sheet in pieces."""
     from kirigami_studio.lab.benchmark.holes_suite import design_holes, hole_figures, hole_sentences
 
     line = ProgressLine()
@@ -554,7 +554,7 @@ def pinned(arguments: argparse.Namespace) -> int:
     line = ProgressLine()
     named = solid_names() if arguments.targets == ["library"] else arguments.targets
     grid = parse_grid_or_auto(arguments.grid)
-    chosen = {} if grid is None else {"grid": grid, "auto_grid": False}
+    chosen: dict[str, Any] = {} if grid is None else {"grid": grid, "auto_grid": False}
     cut = {"material": arguments.material, "construction": Construction.PINNED, "width_mm": arguments.width_mm}
     found = design_pinned(
         [target.read() for target in read_targets(list(named))],

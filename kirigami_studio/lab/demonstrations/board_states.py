@@ -97,8 +97,8 @@ class BoardStates(OffscreenSession):
         target, reshaping = self.window.target, self.window.presenters.target.reshaping
         body = figure(Figure.ELLIPSE, BoundingBox(-40.0, -25.0, 20.0, 25.0))
         reshaping.take(Change("Draw ellipse", lambda: Placed.from_ring(body, "ladle")))
-        arm, now = figure(Figure.RECTANGLE, BoundingBox(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
-        reshaping.take(Change("Add rectangle", lambda: combined(now, arm, Combine.ADD, "rectangle")))
+        arm, now = placed_figure(Figure.RECTANGLE, BoundingBox(15.0, -3.0, 60.0, 3.0)), target.view.context.placed
+        reshaping.take(Change("Add rectangle", lambda: combined(now, arm, Combine.ADD)))
         for tool in (Tool.POINTS, Tool.POSE, Tool.STAR, Tool.TEXT):
             target.set_tool(tool)
             target.tools.set_mode(Combine.ADD)

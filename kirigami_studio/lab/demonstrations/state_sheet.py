@@ -17,6 +17,7 @@ from PIL import Image, ImageDraw, ImageFont
 from PySide6.QtCore import QEvent, QPoint, Qt
 from PySide6.QtWidgets import QApplication
 
+from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.cards import CardButton
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
 from kirigami_studio.gui.make.cut_view import CutOverlay
@@ -198,7 +199,8 @@ class StateSheet(BoardStates):
         window.settings.search.setChecked(True)
         window.settings.candidates.setValue(DESIGNS)
         click(window.run.generate)
-        self.until(lambda: window.status_text.text().startswith("Polished"), "no design was polished")
+        model = window.gallery.view.model_
+        self.until(lambda: any(one.candidate.polished for one in model.entries), "no design was polished")
         self.all_sizes("polishing")
         self.until(lambda: not window.services.run.running, "the run did not end")
         self.until(window.fabrication.export.isEnabled, "no cut plan was made")
@@ -351,6 +353,7 @@ class StateSheet(BoardStates):
     def by_hand(self) -> None:
         """Hand editing, with locked voids and a label at the pointer."""
         window, view, services = self.window, self.window.stage.view, self.window.services
+        before = window.session.history.position
         click(window.stage.hand)
         services.hand.lock(frozenset((row, column) for row in (2, 3) for column in (3, 4, 5)), True)
         for name, degrees in (("half-open", 70.0), ("flat", 180.0), ("target", 0.0)):
@@ -368,7 +371,7 @@ class StateSheet(BoardStates):
         services.hand.nudge(frozenset({(5, 5)}), 0.3)
         self.until(lambda: not services.hand.busy, "the changed ratio was not scored")
         self.all_sizes("by-hand-changed")
-        while window.session.history.undo_label is not None and "void" in window.session.history.undo_label:
+        while window.session.history.position > before:
             window.commands["undo"].trigger()
         click(window.stage.hand)
 
@@ -378,6 +381,7 @@ class StateSheet(BoardStates):
         """
         fabrication = self.window.fabrication
         page, history = self.window.cuts, self.window.session.history
+        before = history.position
         self.window.commands["cuts"].trigger()
         self.all_sizes("cuts")
         click(page.toggles[CutOverlay.TRAVEL])
@@ -392,7 +396,7 @@ class StateSheet(BoardStates):
         page.problems.setCurrentRow(0)
         self.all_sizes("cuts-problem")
         page.view.fit()
-        while history.undo_label is not None and "connectors" in history.undo_label:
+        while history.position > before:
             self.window.commands["undo"].trigger()
         self.until(lambda: not page.problems.isVisible(), "undo did not bring the connectors back")
         page.view.gestures.select(frozenset())
@@ -424,7 +428,7 @@ class StateSheet(BoardStates):
             self.window.messages.close_message()
 
     def _planned(self) -> bool:
-        return "trimmed" in self.window.fabrication.summary.text()
+        return bool(self.window.fabrication.summary.text())
 
     def project(self) -> None:
         """Recovered work, the submenus of files and pictures, the history with undone steps."""
@@ -434,9 +438,10 @@ class StateSheet(BoardStates):
         note = RecoveryNote("teapot.kiri", str(self.out / "teapot.kiri"), "2026-11-21T12:03:00+00:00")
         recovery.keep(window.session.document, note, left)
         filing.recovery.use(folder)
-        self.until(lambda: "quit unexpectedly" in window.messages.sentence.text(), "the lost work was not offered")
+        bar, discard = window.messages, tr("Discard")
+        self.until(lambda: any(discard in dict(one.actions) for one in bar.messages), "the lost work was not offered")
         self.all_sizes("recovery")
-        dict(window.messages.messages[-1].actions)["Discard"]()
+        dict(bar.messages[-1].actions)[discard]()
         while window.messages.messages:
             window.messages.close_message()
         for name in ("teapot.kiri", "session.kiri"):

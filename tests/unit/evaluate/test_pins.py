@@ -15,6 +15,7 @@ from kirigami_studio.evaluate.pins import (
     checkerboard,
     hand_of,
     kept_apart,
+    least_neck,
     least_pin_distance,
     log_ratio_for,
     notch_necks,
@@ -150,6 +151,19 @@ def test_that_a_change_stops_where_pins_are_as_near_as_they_may_be(ratio: float)
     others = np.ones((3, 3), dtype=np.bool_)
     others[1, 1] = False
     assert (kept.field.ratio[others] == sheet.field.ratio[others]).all()
+
+
+def test_that_a_change_stops_where_necks_are_as_narrow_as_they_may_be_though_pins_have_room() -> None:
+    draw, rim = np.random.default_rng(731), Rim.even(3, 3)  # one of few whose necks are the first to run out
+    field = RatioField.from_log10(checkerboard(3, 3) * draw.uniform(0.15, 0.9, (3, 3)))
+    offsets = rim.offsets(3, 3)
+    sheet = Sheet(field, Rim.moved(3, 3, offsets + draw.uniform(-0.3, 0.3, offsets.shape)))
+    least = 0.98 * min(least_pin_distance(deploy(sheet)), least_neck(deploy(sheet)))
+    wished = with_ratio(sheet, (0, 0), 10.0**0.2262)
+    assert least_pin_distance(deploy(wished)) > least > least_neck(deploy(wished))
+    kept = kept_apart(sheet, wished, least)
+    assert kept is not wished and kept != sheet
+    assert least_neck(deploy(kept)) >= least - 2 * GAP_ROUNDING
 
 
 def test_that_pins_that_are_too_near_already_come_no_nearer_and_may_go_apart() -> None:

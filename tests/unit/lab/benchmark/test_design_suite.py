@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.trimming import trim
 from kirigami_studio.lab.benchmark.design_suite import Made, design_figures, make_designs, worst_of, write_contact_sheet
 from kirigami_studio.lab.benchmark.polish_suite import measure_regularity
 from kirigami_studio.lattice.deployment import deploy
@@ -68,6 +69,25 @@ def test_that_the_best_match_stands_beside_the_first_design() -> None:
     assert figures["panel_area_cv"] == one.best.score.evenness.area_cv
     assert figures["best_match"]["iou_exact"] == most  # type: ignore[index]
     assert figures["best_match"]["panel_area_cv"] == one.best_match.score.evenness.area_cv  # type: ignore[index]
+
+
+def test_that_both_families_are_measured_and_drawn(tmp_path: Path) -> None:
+    target = load("heart")
+    (made,) = make_designs([[Request(target, (6, 6), k=2, polish=0)]])
+    closed = made.best
+    cut = trim(deploy(closed.sheet), target, 0.0, closed.score.transform)
+    cover = replace(closed, index=9, origin=Origin.COVERED, trim=replace(cut, iou=0.99, removed_share=0.11))
+    one = replace(made, best=cover, candidates=(cover, *made.candidates))
+    assert one.closed == closed and one.covers == (cover,) and one.best_of_families == cover
+    figures = design_figures([one])
+    assert figures["iou_exact"] == closed.score.iou_exact and "trimmed_iou" not in figures
+    both = figures["best_of_families"]
+    assert isinstance(both, dict) and both["match"] == 0.99 and both["match_worst_name"] == "heart"
+    assert both["covered"] == {"heart": {"match": 0.99, "given_up": 0.11}}
+    write_contact_sheet([one], tmp_path / "both.png", states=True)
+    write_contact_sheet([made], tmp_path / "one.png", states=True)
+    drawn = [np.asarray(Image.open(tmp_path / name).convert("L")) for name in ("both.png", "one.png")]
+    assert np.count_nonzero(drawn[0] < 200) > 1.5 * np.count_nonzero(drawn[1] < 200)
 
 
 def test_that_designs_below_the_uniform_sheet_and_the_worst_are_named() -> None:
