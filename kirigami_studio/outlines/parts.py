@@ -381,6 +381,7 @@ def _usual(source: SourceParts) -> UsualChoice:
     closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
     bored = _bored(taken, {_pen(part) for part in outer}) if takes_rings else []
     numbers = tuple(part.number for part in taken if part in outer or part in bored)
+    bores: list[BaseGeometry]
     if takes_rings:
         bores = [ring[part.number] for part in bored]
     else:
