@@ -281,7 +281,7 @@ class _Drawing:
         ]  # fmt: skip
         if under is not None:
             shapes[0] = replace(shapes[0], rings=(*shapes[0].rings, under))
-        return cls(tuple(shapes), np.zeros((0, 2)), None, bed.size_mm)
+        return cls(tuple(shapes), np.zeros((0, 2)), (), bed.size_mm)
 
 
 _TURN = 2.0 * np.pi * np.arange(PIN_CORNERS) / PIN_CORNERS

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from typing import cast
 
 import numpy as np
 import shapely
@@ -198,7 +199,7 @@ def _moved(target: Outline, axis: MirrorAxis) -> MirrorAxis:
     """The axis shifted and turned a little to where the overlap is largest."""
     if not LEAST_MEANT - 0.1 <= axis.overlap < TOLERANCE:
         return axis
-    shape = target.polygon.simplify(COARSENESS)
+    shape = cast(shapely.Polygon, target.polygon.simplify(COARSENESS))
 
     def shared(polygon: shapely.Polygon, angle: float, offset: float) -> float:
         return _iou(polygon, partial(mirror_image, angle=angle, offset=offset))
