@@ -541,7 +541,7 @@ class Design:
         figures = [f"IoU {self.iou:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
         details = "  ·  ".join(figures if self.feasible else [*figures, "not feasible"])
         heading = f"{self.name}  ·  {self.target.name}"
-        return states_picture(self.posed, self.target.rings, heading, details, self._small_pieces)
+        return states_picture(self.posed, self.target.outline.rings, heading, details, self._small_pieces)
 
     @property
     def _small_pieces(self) -> PosedPieces | None:

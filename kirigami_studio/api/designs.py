@@ -161,7 +161,7 @@ class Designs(Sequence[Design]):
 
     def _repr_svg_(self) -> str:
         heading = repr(self).strip("<>") if not len(self) else f"{len(self)} designs for {self.target.name}"
-        cards = [Thumbnail(one.posed, one.target.rings, one.name, f"IoU {one.iou:.3f}") for one in self]
+        cards = [Thumbnail(one.posed, one.target.outline.rings, one.name, f"IoU {one.iou:.3f}") for one in self]
         return contact_sheet(cards, heading)
 
 

@@ -313,8 +313,8 @@ def _pieces(
 
 
 def _target(canvas: SvgPicture, rings: Sequence[FloatArray], width: float, filled: str = "0") -> None:
-    look = {"fill": TARGET, "fill_opacity": filled, "fill_rule": "evenodd"}
-    canvas.rings(rings, **look, stroke=TARGET, stroke_width=f"{width:g}")
+    pen = {"stroke": TARGET, "stroke_width": f"{width:g}"}
+    canvas.rings(rings, True, fill=TARGET, fill_opacity=filled, fill_rule="evenodd", **pen)
 
 
 def _room(heading: str) -> float:

@@ -41,7 +41,7 @@ class Target:
 
     @property
     def points(self) -> FloatArray:
-        """Vertices (L, 2) of the outer ring, counter-clockwise, y up, area 1, centroid at the origin; read-only."""
+        """Outer ring (L, 2), counter-clockwise, y up, area 1 about the origin; read-only."""
         return self.outline.points
 
     @property

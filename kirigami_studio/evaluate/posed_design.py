@@ -181,7 +181,7 @@ def trimmed_parts(deployment: Deployment, trim: Trim) -> TrimmedParts:
 def covered(
     sheet: FloatArray, target: shapely.Polygon, removed: Sequence[FloatArray] = (), voids: FloatArray | None = None
 ) -> BaseGeometry:
-    """The area within the outline of a sheet (L, 2), crossings and all, but for what was cut off.
+    """The area within the outline of a sheet (L, 2), crossings and all, less what was cut off.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def covered(
     area = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
     area = shapely.difference(area, off, grid_size=GRID)
     if voids is not None:
-        openings = shapely.polygons(voids)
+        openings = np.asarray(shapely.polygons(voids), dtype=np.object_)
         beside = shapely.area(shapely.intersection(openings, target)) < 0.5 * shapely.area(openings)
         lost = openings[beside & shapely.intersects(openings, off.buffer(10.0 * GRID))]
         area = shapely.difference(area, shapely.union_all(lost, grid_size=GRID), grid_size=GRID)

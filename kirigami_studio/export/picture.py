@@ -168,7 +168,7 @@ def draw_polygons(
     target: ShapeRings = None,
     edges: Sequence[FloatArray] | None = None,
 ) -> Image.Image:
-    """Draw panels, each (P, 2), over a target outline (L, 2) with its holes; its lines are repeated on top.
+    """Draw panels, each (P, 2), over a target (L, 2) with its holes, its lines once more on top.
 
     ``edges`` are lines (L, 2) that are drawn over the panels instead of their outlines.
     """

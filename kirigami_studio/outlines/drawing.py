@@ -199,7 +199,7 @@ class Drawing:
         return made if done else Drawing((target.with_holes(filled),), frozenset({0}))
 
     def without_hole_at(self, place: tuple[float, float]) -> Drawing | None:
-        """The drawing with the hole of the topmost object around a place, mm, filled; None without one."""
+        """The drawing with the topmost hole around a place, mm, filled; None without one."""
         for k in range(len(self.objects) - 1, -1, -1):
             if (made := self.objects[k].without_hole_at(place)) is not None:
                 return replace(self, objects=(*self.objects[:k], made, *self.objects[k + 1 :]))

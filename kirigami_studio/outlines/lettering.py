@@ -1,4 +1,4 @@
-"""Letters -> one piece: a sheet is one piece, so each letter is moved until it overlaps the one before.
+"""Letters -> one piece, as a sheet is: each is moved until it overlaps the one before.
 
 The dot of an i and the dots of an umlaut are joined to their letter by a bridge.
 """

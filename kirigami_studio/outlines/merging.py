@@ -124,8 +124,8 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
             )
         region = united(regions, size)
         if merging.as_painted:
-            lines = [part for part in parts if part.lines and part.kind is not DrawnPartKind.FILLED]
-            painted = [_with_pen(part, merging, size) for part in lines]
+            pens = [part for part in parts if part.lines and part.kind is not DrawnPartKind.FILLED]
+            painted = [_with_pen(part, merging, size) for part in pens]
             shown = {part.number: _region(part, merging, size, whole) for part in parts}
             region = region.difference(shapely.union_all(bores_of_pens(painted, shown, 0.0)))
         else:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
@@ -135,7 +136,7 @@ class Outline:
 
     @property
     def filled(self) -> Outline:
-        """The same outline with its holes filled, and kept aside: the silhouette that a whole sheet can show."""
+        """The same outline with its holes filled and kept aside: all that a whole sheet can show."""
         return self._with(holes=(), filled_holes=(*self.filled_holes, *self.holes)) if self.holes else self
 
     @property
@@ -227,11 +228,12 @@ def cut_out(ring: FloatArray, holes: Sequence[FloatArray]) -> tuple[FloatArray, 
 def _inside(region: Polygon, holes: Sequence[FloatArray]) -> list[FloatArray]:
     """The simple ones of some rings that lie wholly in a region and apart from each other."""
     kept: list[FloatArray] = []
+    rest: BaseGeometry = region
     for hole in holes:
         shape = Polygon(hole)
-        if shape.is_valid and region.contains_properly(shape):
+        if shape.is_valid and rest.contains_properly(shape):
             kept.append(tidy(hole))
-            region = region.difference(shape)
+            rest = rest.difference(shape)
     return kept
 
 

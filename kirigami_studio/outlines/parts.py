@@ -383,6 +383,7 @@ def _usual(source: SourceParts) -> UsualChoice:
     closed = [part for part in parts if part.is_closed and part in (*shapes, *lines, *letters)]
     bored = _bored(taken, {_pen(part) for part in outer}) if takes_rings else []
     numbers = tuple(part.number for part in taken if part in outer or part in bored)
+    bores: list[BaseGeometry]
     if takes_rings:
         bores = [ring[part.number] for part in bored]
     else:
@@ -411,12 +412,12 @@ def _usual(source: SourceParts) -> UsualChoice:
 
 
 def _pen(part: Part) -> tuple[str, str, float]:
-    """What contours of one kind have in common."""
+    """Layer, colour and width, which contours of one kind share."""
     return part.layer, part.colour, part.pen.width
 
 
 def _bored(parts: Sequence[Part], pens: Collection[tuple[str, str, float]]) -> list[Part]:
-    """Contours that are holes: those within others of one of some pens, unless there are too many."""
+    """Holes among contours: those within others of some pens, unless they are too many."""
     found = [part for pen in pens for part in inner_contours([part for part in parts if _pen(part) == pen])]
     return found if len(found) <= MOST_BORES else []
 
@@ -438,7 +439,7 @@ def inner_contours(parts: Sequence[Part]) -> list[Part]:
 
 
 def bores_of_pens(lines: Sequence[Part], regions: Mapping[int, BaseGeometry], size: float) -> list[BaseGeometry]:
-    """What closed lines leave open as they are painted, where nothing else lies within.
+    """Insides that closed lines leave open as they are painted, with nothing else in them.
 
     Parameters
     ----------

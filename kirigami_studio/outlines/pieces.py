@@ -150,7 +150,7 @@ def rings_of(piece: Polygon) -> tuple[FloatArray, list[FloatArray]]:
 
 
 def has_seen_holes(piece: Polygon, region: BaseGeometry | None = None, breadth: float = LEAST_BREADTH) -> bool:
-    """Whether the holes of a piece are seen as such: most of what stays around them is broader than a line.
+    """Whether holes of a piece are seen as such: most of what stays is broader than a line.
 
     Parameters
     ----------

@@ -143,7 +143,7 @@ class Placed:
         return Placed.from_ring(ring, self.outline.name, notes, self.holes, tuple(filled))
 
     def with_polygon(self, polygon: Polygon, notes: Iterable[str] = ()) -> Placed:
-        """The same target as another polygon with its holes, mm; those that were filled stay where they are."""
+        """The same target as another polygon with its holes, mm; filled ones stay."""
         ring, holes = rings_of(polygon)
         filled = map(self._on_board, self.outline.filled_holes)
         return Placed.from_ring(tidy(as_contour(ring)), self.outline.name, notes, holes, tuple(filled))

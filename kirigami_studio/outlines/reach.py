@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import cast
 
 import numpy as np
 import shapely
@@ -72,7 +73,7 @@ def reach_of(outline: Outline, grid: tuple[int, int]) -> Reach:
     if rows < 1 or columns < 1:
         raise TargetError("reach.no_voids", rows=rows, columns=columns)
     panel = 1.0 / math.sqrt((rows + 1) * (columns + 1))
-    shape = outline.polygon.simplify(COARSENESS * panel)
+    shape = cast(Polygon, outline.polygon.simplify(COARSENESS * panel))
     radius = 0.5 * NEEDED_PANELS * panel
     arms = _parts(shape.difference(_there_and_back(shape, -radius)), panel)
     whole = Polygon(shape.exterior)  # a hole is cut out of the panels, however small it is

@@ -126,7 +126,7 @@ def trace_image(path: str | Path, threshold: float | None = None) -> Traced:
 
 
 def _outline(piece: Polygon, name: str, notes: tuple[str, ...], reduction: int, is_plain: bool) -> Outline:
-    """The outline of a traced piece, pixels; its holes are open where it is plain that they are some."""
+    """The outline of a traced piece, pixels; its holes are open where they are plain."""
     ring, holes = rings_of(piece)
     found = Outline.from_points(ring * reduction, name, notes, unit="px", holes=[hole * reduction for hole in holes])
     return found if is_plain and has_seen_holes(piece) else found.filled

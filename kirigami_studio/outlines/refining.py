@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -36,7 +37,7 @@ def stroked(points: npt.ArrayLike) -> Placed:
     """
     ring, notes = smoothed_stroke(points)
     drawn = Placed.from_ring(ring, "drawing", notes)
-    return drawn.with_polygon(drawn.polygon.simplify(STROKE_ERROR * drawn.scale), drawn.outline.notes)
+    return drawn.with_polygon(_simpler(drawn.polygon, STROKE_ERROR * drawn.scale), drawn.outline.notes)
 
 
 def simplified(target: Placed, strength: float) -> Placed:
@@ -50,9 +51,9 @@ def simplified(target: Placed, strength: float) -> Placed:
     tolerance = COARSEST * _checked(strength, "simplifying.strength") ** 2 * target.scale
     if tolerance == 0.0:
         return target
-    simple = target.polygon.simplify(tolerance)
+    simple = _simpler(target.polygon, tolerance)
     fewer = shapely.get_num_coordinates(simple) < shapely.get_num_coordinates(target.polygon)
-    return target.with_polygon(simple) if fewer and isinstance(simple, Polygon) and not simple.is_empty else target
+    return target.with_polygon(simple) if fewer and not simple.is_empty else target
 
 
 def smoothed(target: Placed, strength: float) -> Placed:
@@ -68,7 +69,7 @@ def smoothed(target: Placed, strength: float) -> Placed:
         return target
     rings = [_calmed(ring, sigma) for ring in target.rings]
     shape = Polygon(rings[0], rings[1:]) if len(rings) > 1 else target.reshaped(rings[0]).polygon
-    return target.with_polygon(shape.simplify(STROKE_ERROR * target.scale))
+    return target.with_polygon(_simpler(shape, STROKE_ERROR * target.scale))
 
 
 def _calmed(ring: FloatArray, sigma: float) -> FloatArray:
@@ -120,6 +121,11 @@ def stretched(target: Placed, factors: tuple[float, float], fixed: tuple[float, 
         return target.enlarged(factors[0], target.centre if fixed is None else fixed)
     stay = np.array(target.centre if fixed is None else fixed)
     return target.mapped(np.diag(factors), stay * (1.0 - np.array(factors)))
+
+
+def _simpler(polygon: Polygon, tolerance: float) -> Polygon:
+    """A polygon with fewer vertices, which keeps its holes."""
+    return cast(Polygon, polygon.simplify(tolerance))
 
 
 def _checked(strength: float, code: str) -> float:

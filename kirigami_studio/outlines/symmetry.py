@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from typing import cast
 
 import numpy as np
 import shapely
@@ -198,7 +199,7 @@ def _moved(target: Outline, axis: MirrorAxis) -> MirrorAxis:
     """The axis shifted and turned a little to where the overlap is largest."""
     if not LEAST_MEANT - 0.1 <= axis.overlap < TOLERANCE:
         return axis
-    shape = target.polygon.simplify(COARSENESS)
+    shape = cast(shapely.Polygon, target.polygon.simplify(COARSENESS))
 
     def shared(polygon: shapely.Polygon, angle: float, offset: float) -> float:
         return _iou(polygon, partial(mirror_image, angle=angle, offset=offset))
@@ -231,7 +232,7 @@ def _highest(value: Callable[[float], float], low: float, high: float) -> float:
 
 
 def _iou(polygon: shapely.Polygon, moved: Callable[[FloatArray], FloatArray]) -> float:
-    """IoU of a polygon and its image, whose points (L, 2) are moved without a change of its area."""
+    """IoU of a polygon and its image of the same area, whose points (L, 2) are moved."""
     outer, *holes = (moved(shapely.get_coordinates(ring)) for ring in (polygon.exterior, *polygon.interiors))
     common = polygon.intersection(shapely.Polygon(outer, holes)).area
     return float(common / (2.0 * polygon.area - common))

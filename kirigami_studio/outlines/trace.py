@@ -1,4 +1,4 @@
-"""An ink field -> one polygon: largest piece with its holes, contours at level 0 with sub-pixel precision."""
+"""An ink field -> its largest piece with holes, by contours at level 0 between pixels."""
 
 from __future__ import annotations
 

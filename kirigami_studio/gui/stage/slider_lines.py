@@ -124,7 +124,7 @@ class EndButton(QAbstractButton):
 
 
 def paint_end(painter: QPainter, box: QRectF, outline: ShapeRings, sheet: bool, palette: Palette) -> None:
-    """Draw an outline (P, 2) with its holes, y up, as large as fits: a sheet is blue, a target orange."""
+    """Draw an outline (P, 2), y up, as large as fits: a sheet is blue, a target orange."""
     transform = ViewTransform.fitting(Bounds.of(as_rings(outline)[0]), box, 1.0)
     paint = paint_start_shape if sheet else paint_target_shape
     paint(painter, transform.rings_to_pixels(outline), palette, 1.4)

@@ -38,7 +38,7 @@ def paint_start_shape(painter: QPainter, rings: ShapeRings, palette: Palette, wi
 def paint_target_line(
     painter: QPainter, rings: ShapeRings, palette: Palette, width: float = 2.0, *, dashed: bool = False
 ) -> None:
-    """Draw the lines of a target, (L, 2) pixels, with a halo: they read on panels and on the empty canvas.
+    """Draw the lines of a target, (L, 2) pixels, with a halo that lifts them off panels.
 
     That of a second target is ``dashed``.
     """
