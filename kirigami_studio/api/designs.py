@@ -98,7 +98,7 @@ class Designs(Sequence[Design]):
         return np.array([design.ratios for design in self])
 
     def why_covered(self) -> str:
-        """Why there are designs of which parts are cut away beside closed ones; "" where there are none."""
+        """Why covers, of which parts are cut away, stand beside closed designs; "" without any."""
         why = why_covered(self.document.candidates, self.document.target, self.document.settings.start)
         return "" if why is None else why.text
 

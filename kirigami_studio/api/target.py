@@ -23,7 +23,7 @@ from kirigami_studio.studio.targets import PartChoice, outline_of
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Target:
-    """A silhouette that sheets are to show: closed, simple, of area 1 about its centroid, maybe with holes.
+    """A silhouette for sheets to show: simple, of area 1 about its centroid, maybe with holes.
 
     In a notebook it shows itself.
 

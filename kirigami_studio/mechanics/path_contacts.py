@@ -36,13 +36,13 @@ def contacts_on_way(panels: Sequence[FloatArray], found: Closing, kerf_mm: float
         Of the sheet without these contacts.
     kerf_mm : float
     """
-    way = _Way(panels, found, kerf_mm)
+    way = _ClosingPath(panels, found, kerf_mm)
     rows = [row for pair, step in way.steps().items() for row in way.corners(pair, step)]
     columns = [np.array(column) for column in zip(*rows, strict=True)]
     return Meetings(*columns) if columns else Meetings.none()
 
 
-class _Way:
+class _ClosingPath:
     """Rigid panels of a sheet, and their motion."""
 
     def __init__(self, panels: Sequence[FloatArray], found: Closing, kerf_mm: float) -> None:

@@ -124,7 +124,7 @@ class Ranking:
         return (2.0 * self.regular) ** 2
 
     def prices(self, candidate: Candidate) -> dict[str, float]:
-        """What is taken off the IoU, by the code of the reason that names it."""
+        """Prices that are taken off the IoU, by the codes of their reasons."""
         scale, figures = self.scale, candidate.score.evenness
         thinness = max(0.0, 1.0 - min(figures.least_edge, figures.least_neck) / SLENDER)
         return {
@@ -147,7 +147,7 @@ class Ranking:
         return candidate.match - sum(self.prices(candidate).values())
 
     def made_match(self, candidate: Candidate) -> float:
-        """Exact IoU of what is made of a design: trimmed, if it is; of its pieces where they are known."""
+        """Exact IoU of a design as made: trimmed, if it is; of its pieces where known."""
         return candidate.match - (self.losses.get(candidate, 0.0) if self.least_gap_mm else 0.0)
 
     def key(self, candidate: Candidate) -> Key:

@@ -245,7 +245,7 @@ def first_of_families(candidates: Sequence[Candidate]) -> dict[Family, tuple[int
 
 
 def why_covered(candidates: Sequence[Candidate], target: Outline | None, start: StartShape = RECTANGLE) -> Note | None:
-    """Why there are designs of which parts are cut away beside closed ones: what each family shows at most.
+    """Why covers stand beside closed designs: the most that each family shows.
 
     Returns
     -------

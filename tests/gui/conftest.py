@@ -21,7 +21,7 @@ from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -100,7 +100,7 @@ def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
     made = create_window(LIGHT, file_dialogs=files)
     with qtbot.waitExposed(made):
         made.show()
-    made.pages.turn(Page.DESIGN)
+    made.pages.turn(WindowPage.DESIGN)
     for button in (Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton):
         QTest.mouseRelease(made, button, pos=QPoint(1, made.height() - 2))  # a test may have kept it pressed
     QTest.mouseMove(made, QPoint(1, made.height() - 2))

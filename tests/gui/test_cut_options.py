@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions, CutOrder
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.project import store
 from kirigami_studio.settings.fabrication import FabricationSettings
 
@@ -31,7 +31,7 @@ def pick(box: QComboBox, value: object) -> None:
 @pytest.fixture
 def options(designed: MainWindow) -> MainWindow:
     designed.resize(1440, 1000)
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     return designed
 
 

@@ -20,7 +20,7 @@ from kirigami_studio.gui.make.cut_view import CutOverlay, CutView
 from kirigami_studio.gui.widgets.legends import round_length
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 
@@ -67,10 +67,12 @@ def test_that_a_key_goes_to_the_sheet_as_it_is_cut_and_back(designed: MainWindow
     stage, cuts = designed.stage, designed.cuts
     assert stage.view.isVisible() and not cuts.view.isVisible()
     qtbot.keyClick(designed, Qt.Key.Key_C)
-    assert designed.pages.page is Page.MAKE and cuts.view.hasFocus() and cuts.toggles[CutOverlay.TRAVEL].isVisible()
+    assert (
+        designed.pages.page is WindowPage.MAKE and cuts.view.hasFocus() and cuts.toggles[CutOverlay.TRAVEL].isVisible()
+    )
     assert stage.view.isVisible() and stage.deployment.isVisible(), "stage and slider stay in view"
     qtbot.keyClick(designed, Qt.Key.Key_C)
-    assert designed.pages.page is Page.DESIGN and stage.view.hasFocus() and not cuts.isVisible()
+    assert designed.pages.page is WindowPage.DESIGN and stage.view.hasFocus() and not cuts.isVisible()
 
 
 @pytest.mark.parametrize("kerf", [0.5, 2.0])

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.project import candidate_edits, store
 
 Until = Callable[[Callable[[], bool]], None]
@@ -25,7 +25,7 @@ LEFT = Qt.MouseButton.LeftButton
 def shown(designed: MainWindow, until: Until) -> MainWindow:
     """The page on which a design is made."""
     designed.resize(1440, 1000)
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     until(lambda: plan_of(designed) is not None)
     return designed
 

@@ -23,7 +23,7 @@ from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.project import preferences
 from tests.gui.test_parts import LOGO, opened, written
 
@@ -199,7 +199,7 @@ def test_that_the_welcome_page_is_german(window: MainWindow) -> None:
 
 
 def without_room(designed: MainWindow) -> None:
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     designed.resize(1000, 640)
     material, order = designed.fabrication.material, designed.gallery.bar.order
     QApplication.processEvents()

@@ -23,11 +23,11 @@ from kirigami_studio.gui.widgets.number_field import LengthField
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
-KEYS = {Page.SHAPE: Qt.Key.Key_1, Page.DESIGN: Qt.Key.Key_2, Page.MAKE: Qt.Key.Key_3}
+KEYS = {WindowPage.SHAPE: Qt.Key.Key_1, WindowPage.DESIGN: Qt.Key.Key_2, WindowPage.MAKE: Qt.Key.Key_3}
 
 
 def on_page(window: MainWindow) -> dict[str, bool]:
@@ -38,19 +38,19 @@ def on_page(window: MainWindow) -> dict[str, bool]:
 
 def test_that_a_window_begins_with_the_shape(qtbot: QtBot) -> None:
     window = create_window(LIGHT)
-    assert window.pages.page is Page.SHAPE and window.target.editing
+    assert window.pages.page is WindowPage.SHAPE and window.target.editing
     assert window.close()
     window.deleteLater()
 
 
 def test_that_keys_and_the_bar_turn_the_pages_in_any_order(designed: MainWindow, qtbot: QtBot) -> None:
     shown = {
-        Page.SHAPE: {"target", "welcome", "run"},
-        Page.DESIGN: {"target", "settings", "run", "stage", "gallery"},
-        Page.MAKE: {"fabrication", "stage", "cuts"},
+        WindowPage.SHAPE: {"target", "welcome", "run"},
+        WindowPage.DESIGN: {"target", "settings", "run", "stage", "gallery"},
+        WindowPage.MAKE: {"fabrication", "stage", "cuts"},
     }
     before = designed.session.document
-    for number, order in enumerate(permutations(Page)):
+    for number, order in enumerate(permutations(WindowPage)):
         for page in order:
             if number % 2:
                 qtbot.keyClick(designed, KEYS[page])
@@ -58,13 +58,13 @@ def test_that_keys_and_the_bar_turn_the_pages_in_any_order(designed: MainWindow,
                 qtbot.mouseClick(designed.page_buttons[page], LEFT)
             assert designed.pages.page is page
             assert {name for name, visible in on_page(designed).items() if visible} == shown[page]
-            checked = [one for one in Page if designed.commands[f"page_{one.value}"].isChecked()]
+            checked = [one for one in WindowPage if designed.commands[f"page_{one.value}"].isChecked()]
             assert checked == [page]
     assert designed.session.document is before and not designed.session.history.unsaved
 
 
-@pytest.mark.parametrize("page", Page)
-def test_that_each_page_has_one_primary_button(page: Page, designed: MainWindow) -> None:
+@pytest.mark.parametrize("page", WindowPage)
+def test_that_each_page_has_one_primary_button(page: WindowPage, designed: MainWindow) -> None:
     designed.pages.turn(page)
     primary = [one for one in designed.findChildren(QPushButton) if one.objectName() == "primary" and one.isVisible()]
     assert len(primary) == 1
@@ -72,12 +72,12 @@ def test_that_each_page_has_one_primary_button(page: Page, designed: MainWindow)
 
 def test_that_stage_and_slider_stay_as_they_are_from_designing_to_making(designed: MainWindow) -> None:
     designed.stage.deployment.set_phi(1.0)
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     stage = designed.stage
     assert stage.view.isVisible() and stage.deployment.slider.isVisible()
     assert stage.view.phi == pytest.approx(1.0, abs=2e-3) and stage.view.design is not None
     stage.deployment.set_phi(2.0)
-    designed.pages.turn(Page.DESIGN)
+    designed.pages.turn(WindowPage.DESIGN)
     assert stage.view.phi == pytest.approx(2.0, abs=2e-3)
 
 
@@ -87,50 +87,50 @@ def test_that_digits_are_typed_where_numbers_are(designed: MainWindow) -> None:
     field.selectAll()
     for key in (Qt.Key.Key_1, Qt.Key.Key_2):
         QTest.keyClick(field, key)
-    assert designed.pages.page is Page.DESIGN and field.text() == "12"
-    designed.pages.turn(Page.MAKE)
+    assert designed.pages.page is WindowPage.DESIGN and field.text() == "12"
+    designed.pages.turn(WindowPage.MAKE)
     designed.cuts.view.gestures.select(frozenset({3}))
     designed.cuts.view.setFocus()
     QTest.keyClick(designed.cuts.view, Qt.Key.Key_1)
-    assert designed.pages.page is Page.MAKE and designed.cuts.hinges.width_mm.hasFocus()
+    assert designed.pages.page is WindowPage.MAKE and designed.cuts.hinges.width_mm.hasFocus()
 
 
 def test_that_what_plays_and_what_is_compared_belong_to_their_page(designed: MainWindow) -> None:
     designed.commands["cuts"].trigger()
     assert designed.pages.player is designed.cuts.bar
     designed.cuts.bar.play.setChecked(True)
-    designed.pages.turn(Page.DESIGN)
+    designed.pages.turn(WindowPage.DESIGN)
     assert not designed.cuts.bar.playing and designed.pages.player is designed.stage.deployment
     designed.commands["compare"].trigger()
     assert designed.stage.comparing
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     assert not designed.stage.comparing and designed.stage.view.isVisible()
     designed.commands["compare"].trigger()
-    assert designed.pages.page is Page.DESIGN and designed.stage.comparing
+    assert designed.pages.page is WindowPage.DESIGN and designed.stage.comparing
     designed.commands["all_designs"].trigger()
     assert designed.presenters.all_designs.shown
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     assert not designed.presenters.all_designs.shown and designed.cuts.isVisible()
     designed.commands["all_designs"].trigger()
-    assert designed.pages.page is Page.DESIGN and designed.presenters.all_designs.shown
+    assert designed.pages.page is WindowPage.DESIGN and designed.presenters.all_designs.shown
 
 
 def test_that_the_board_opens_the_first_page_and_leaves_to_the_one_before(designed: MainWindow) -> None:
-    for page in (Page.DESIGN, Page.MAKE):
+    for page in (WindowPage.DESIGN, WindowPage.MAKE):
         designed.pages.turn(page)
         designed.commands["edit_target"].trigger()
-        assert designed.pages.page is Page.SHAPE and designed.target.editing
+        assert designed.pages.page is WindowPage.SHAPE and designed.target.editing
         QTest.keyClick(designed.target.view, Qt.Key.Key_Escape)
         assert designed.pages.page is page and not designed.target.editing
 
 
 def test_that_moved_borders_are_those_of_their_page_and_last(designed: MainWindow, tmp_path: Path) -> None:
     designed.resize(1440, 900)
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     designed.pages.splitter.setSizes([400, 500, 500])
     designed.pages.splitter.splitterMoved.emit(400, 1)
     moved = designed.pages.splitter.sizes()
-    designed.pages.turn(Page.DESIGN)
+    designed.pages.turn(WindowPage.DESIGN)
     assert designed.pages.splitter.sizes()[0] < moved[0] - 20
     state = QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat)
     designed.remember(state)
@@ -139,7 +139,7 @@ def test_that_moved_borders_are_those_of_their_page_and_last(designed: MainWindo
     again.restore(QSettings(str(tmp_path / "state.ini"), QSettings.Format.IniFormat))
     again.resize(1440, 900)
     again.show()
-    again.pages.turn(Page.MAKE)
+    again.pages.turn(WindowPage.MAKE)
     assert again.pages.splitter.sizes()[0] == pytest.approx(moved[0], abs=8)
     assert again.close()
     again.deleteLater()
@@ -178,9 +178,9 @@ def test_that_nothing_jumps_when_a_run_begins_and_cancel_answers_while_the_worke
 
 
 def test_that_a_run_goes_to_the_designs_and_shows_their_target(heart: MainWindow) -> None:
-    heart.pages.turn(Page.SHAPE)
+    heart.pages.turn(WindowPage.SHAPE)
     heart.commands["generate"].trigger()
-    assert heart.pages.page is Page.DESIGN and heart.stage.view.design is None
+    assert heart.pages.page is WindowPage.DESIGN and heart.stage.view.design is None
     bounds, target = heart.stage.view.scene_bounds(), heart.session.document.target
     assert bounds is not None and target is not None
     assert (bounds.left, bounds.right) == pytest.approx((target.points[:, 0].min(), target.points[:, 0].max()))
@@ -221,7 +221,7 @@ def begun(window: MainWindow, until: Until, tmp_path: Path) -> Maker:
     window.services.preferences.use(tmp_path / "preferences.toml")
     window.services.settings.change(k=2, polish=2, auto_grid=False, grid=(4, 5))
     window.session.restart(window.session.document, None)
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     window.services.targeting.open("heart")
     window.presenters.welcome.begin()
     until(lambda: window.welcome.question.isVisible() and window.session.document.target is not None)
@@ -236,7 +236,7 @@ def test_that_a_heart_in_film_is_a_file_after_three_actions(
     files.answer = tmp_path / "heart.dxf"  # type: ignore[attr-defined]
     maker.click(window.run.generate)
     until(lambda: window.fabrication.export.isEnabled() and not window.services.run.running)
-    maker.click(window.page_buttons[Page.MAKE])
+    maker.click(window.page_buttons[WindowPage.MAKE])
     maker.click(window.fabrication.export)
     until((tmp_path / "heart.dxf").exists)
     assert maker.actions == 3
@@ -259,7 +259,7 @@ def test_that_a_heart_in_plywood_is_files_after_four_actions(
 
 def test_that_the_sheet_is_shown_on_the_bed_of_its_machine(designed: MainWindow) -> None:
     designed.services.fabrication.change(machine="k40", material="card-co2")
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     cuts = designed.cuts
     alone = cuts.view.scene_bounds()
     cuts.toggles[CutOverlay.BED].click()

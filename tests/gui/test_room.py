@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.gui.window.stage_panel import LOW
 
 Until = Callable[[Callable[[], bool]], None]
@@ -45,7 +45,7 @@ def test_that_the_gallery_keeps_whole_rows_of_cards(designed: MainWindow, width:
 def test_that_the_page_of_making_shows_choices_numbers_stage_and_sheet_at_once(
     designed: MainWindow, width: int, height: int
 ) -> None:
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     resized(designed, width, height)
     panel, stage, cuts = designed.fabrication, designed.stage, designed.cuts
     shown = (panel.machine, panel.material, panel.construction, *panel.numbers.values(), panel.warnings, panel.export)
@@ -57,7 +57,7 @@ def test_that_the_page_of_making_shows_choices_numbers_stage_and_sheet_at_once(
 
 
 def test_that_what_is_wrong_is_said_beside_the_numbers(designed: MainWindow, until: Until) -> None:
-    designed.pages.turn(Page.MAKE)
+    designed.pages.turn(WindowPage.MAKE)
     resized(designed, 1000, 640)
     designed.services.fabrication.change(connector_mm=20.0)
     until(lambda: not designed.fabrication.export.isEnabled())

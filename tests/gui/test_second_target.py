@@ -25,7 +25,7 @@ from kirigami_studio.gui.stage.phi_slider import MarkKind
 from kirigami_studio.gui.target.sketch_context import Change
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.placed import Placed
@@ -101,7 +101,7 @@ def test_that_it_lies_below_the_drawing_board(window: MainWindow, until: Until, 
 
 def test_that_shape_angle_and_weight_are_one_undo_step_each(window: MainWindow, until: Until) -> None:
     row, session = window.settings.second, window.session
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     take(window, until, "hexagon")
     for value in (50.0, 60.0, 70.0):
         row.angle.setValue(value)
@@ -124,7 +124,7 @@ def test_that_shape_angle_and_weight_are_one_undo_step_each(window: MainWindow, 
 
 def test_that_it_lies_between_the_flat_sheet_and_the_target(heart: MainWindow, until: Until) -> None:
     row, settings, session = heart.settings.second, heart.settings, heart.session
-    heart.pages.turn(Page.SHAPE)
+    heart.pages.turn(WindowPage.SHAPE)
     settings.angle.setValue(80.0)
     take(heart, until, "hexagon")
     assert row.angle.value() == 130.0  # halfway, as the usual angle is not passed
@@ -141,7 +141,7 @@ def test_that_it_lies_between_the_flat_sheet_and_the_target(heart: MainWindow, u
 def test_that_a_file_falls_on_the_row_or_is_opened_and_a_bad_one_changes_nothing(
     window: MainWindow, files: object, until: Until, tmp_path: Path
 ) -> None:
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     row, drawn = window.settings.second, tmp_path / "kite.json"
     drawn.write_text("[[0, 0], [2, 1], [0, 4], [-2, 1]]", encoding="utf-8")
     content = QMimeData()
@@ -165,7 +165,7 @@ def test_that_a_file_falls_on_the_row_or_is_opened_and_a_bad_one_changes_nothing
 
 
 def test_that_it_is_drawn_on_a_board_of_its_own(window: MainWindow) -> None:
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     choose(window, "draw")
     board = window.dialogs.second_board
     assert board is not None and board.isVisible() and not board.take.isEnabled()
@@ -234,7 +234,7 @@ def test_that_generate_uses_it_and_the_project_keeps_it(
     services = heart.services
     for change in ({"grid": (4, 5)}, {"k": 2}, {"polish": 2}):
         services.settings.change(**change)  # type: ignore[arg-type]
-    heart.pages.turn(Page.SHAPE)
+    heart.pages.turn(WindowPage.SHAPE)
     take(heart, until, "hexagon")
     heart.settings.second.angle.setValue(60.0)
     QTest.keyClick(heart.settings.second.angle, Qt.Key.Key_Return)

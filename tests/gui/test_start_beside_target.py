@@ -26,7 +26,7 @@ from kirigami_studio.gui.target.sketch_context import Change
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets.readable import TIMES
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
@@ -107,7 +107,7 @@ def test_that_the_tile_opens_its_list_by_mouse_and_keys_also_beside_the_board(wi
     QTest.keyClick(tile, Qt.Key.Key_Return)
     assert tile.menu.isVisible() and not tile.entries["circle"].icon().isNull()
     tile.menu.close()
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     assert tile.isVisible() and window.target.view.width() > 4 * tile.width()
     tile.click()
     assert tile.menu.isVisible()

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.fabricate.machine import cuttable, find_machine, machines
 from kirigami_studio.gui.make.machine_question import CuttingQuestion
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.gui.window.welcome_page import OFFERS, moves
 from kirigami_studio.project import preferences
 from kirigami_studio.project.preferences import Preferences
@@ -35,7 +35,7 @@ def begun(window: MainWindow, until: Until, tmp_path: Path) -> MainWindow:
     """The first start, with the heart and its sample."""
     window.services.preferences.use(tmp_path / "preferences.toml")
     window.services.targeting.start_with("heart")
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     window.presenters.welcome.begin()
     until(lambda: window.welcome.ready and window.session.document.target is not None)
     return window
@@ -165,14 +165,14 @@ def test_that_the_question_is_answered_by_keys(begun: MainWindow, qtbot: QtBot, 
 
 
 def test_that_the_page_is_there_before_its_sample(window: MainWindow) -> None:
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     page = window.welcome
     assert page.isVisible() and not page.ready and not page.view.isVisible() and not window.stage.isVisible()
 
 
 def test_that_every_offer_does_what_its_command_does(window: MainWindow, qtbot: QtBot) -> None:
     done = []
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     assert list(window.welcome.offers) == [name for name, _, _ in OFFERS]
     for name, offer in window.welcome.offers.items():
         action = window.commands[name]
@@ -184,7 +184,7 @@ def test_that_every_offer_does_what_its_command_does(window: MainWindow, qtbot: 
 
 
 def test_that_the_offers_lead_to_a_design(window: MainWindow, qtbot: QtBot, until: Until) -> None:
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     qtbot.mouseClick(window.welcome.offers["sample"], LEFT)
     until(lambda: window.session.stage is not None)
     assert not window.welcome.isVisible() and window.stage.deployment.isVisible()

@@ -24,7 +24,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.gui.window.main_window import MainWindow
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
@@ -267,7 +267,7 @@ def test_that_a_new_user_has_the_cut_file_of_the_heart_after_three_actions(
     person: Person, window: MainWindow, until: Callable[[Callable[[], bool]], None], tmp_path: Path
 ) -> None:
     window.resize(*SIZE)
-    window.pages.turn(Page.SHAPE)
+    window.pages.turn(WindowPage.SHAPE)
     window.presenters.welcome.begin()
     until(lambda: window.welcome.ready)
     QApplication.processEvents()

@@ -32,7 +32,7 @@ from kirigami_studio.gui.window import (
 from kirigami_studio.gui.window.appearance import Appearance
 from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.open_dialogs import Dialogs
-from kirigami_studio.gui.window.pages import Page, Pages
+from kirigami_studio.gui.window.pages import Pages, WindowPage
 from kirigami_studio.gui.window.presenters import Presenters
 from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.submenus import LanguageMenu, PictureMenu, RecentMenu, offer_context_menus
@@ -237,7 +237,7 @@ class MainWindow(QMainWindow):
         bar.addWidget(self.heading)
         for name in after:
             bar.addAction(self.commands[name])
-        self.page_buttons: dict[Page, QWidget] = {}
+        self.page_buttons: dict[WindowPage, QWidget] = {}
         for name, page in PAGE_COMMANDS.items():
             button = self.page_buttons[page] = bar.widgetForAction(self.commands[name])
             button.setProperty("page", True)

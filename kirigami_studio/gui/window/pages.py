@@ -22,7 +22,7 @@ from kirigami_studio.gui.window.stage_panel import StagePanel
 from kirigami_studio.gui.window.welcome_page import WelcomePage
 
 
-class Page(Enum):
+class WindowPage(Enum):
     """A page of the window."""
 
     SHAPE = "shape"  #: draw or read the target, choose what it is made with
@@ -32,15 +32,15 @@ class Page(Enum):
 
 #: Title, and what is done there, by page.
 WORDS = {
-    Page.SHAPE: (mark("Shape"), mark("Draw or open the target, its start and its size")),
-    Page.DESIGN: (mark("Design"), mark("Generate designs, compare them and edit one")),
-    Page.MAKE: (mark("Make"), mark("Machine, material, cuts and files of the chosen design")),
+    WindowPage.SHAPE: (mark("Shape"), mark("Draw or open the target, its start and its size")),
+    WindowPage.DESIGN: (mark("Design"), mark("Generate designs, compare them and edit one")),
+    WindowPage.MAKE: (mark("Make"), mark("Machine, material, cuts and files of the chosen design")),
 }
 #: Shares of the window's width that the outer columns take on a page, with the least and largest of each in pixels.
 SHARES = {
-    Page.SHAPE: ((1.0, 284, 9999), (0.27, 322, 380)),
-    Page.DESIGN: ((0.225, 284, 340), (0.25, 322, 372)),
-    Page.MAKE: ((0.25, 336, 380), (0.35, 330, 900)),
+    WindowPage.SHAPE: ((1.0, 284, 9999), (0.27, 322, 380)),
+    WindowPage.DESIGN: ((0.225, 284, 340), (0.25, 322, 372)),
+    WindowPage.MAKE: ((0.25, 336, 380), (0.35, 330, 900)),
 }
 #: Largest widths of the button that starts a run, and of the second target, pixels.
 BUTTON, SECOND = 340, 420
@@ -49,23 +49,23 @@ BUTTON, SECOND = 340, 420
 class Pages(QWidget):
     """Lays out on each page the panels that belong there, and remembers their sizes."""
 
-    turned = Signal(Page)
+    turned = Signal(WindowPage)
 
     def __init__(self) -> None:
         super().__init__()
-        self.page = Page.SHAPE
+        self.page = WindowPage.SHAPE
         self.target, self.settings, self.run = TargetPanel(), SettingsPanel(), GenerateBar()
         self.stage, self.gallery = StagePanel(), GalleryPanel()
         self.fabrication, self.cuts, self.welcome = FabricationPanel(), CutsPage(), WelcomePage()
         self.run.setMaximumWidth(BUTTON)
-        self._moved: dict[Page, list[int]] = {}  # sizes of columns whose borders the user has moved
+        self._moved: dict[WindowPage, list[int]] = {}  # sizes of columns whose borders the user has moved
         self._whole = False
-        self._before = Page.DESIGN  # where leaving the drawing board leads
+        self._before = WindowPage.DESIGN  # where leaving the drawing board leads
         second = self.settings.second
-        self._parts: dict[Page, tuple[QWidget, ...]] = {
-            Page.SHAPE: (self.target, second, self.run, self.welcome),
-            Page.DESIGN: (self.target, self.settings, self.run, self.stage, self.gallery),
-            Page.MAKE: (self.fabrication, self.stage, self.cuts),
+        self._parts: dict[WindowPage, tuple[QWidget, ...]] = {
+            WindowPage.SHAPE: (self.target, second, self.run, self.welcome),
+            WindowPage.DESIGN: (self.target, self.settings, self.run, self.stage, self.gallery),
+            WindowPage.MAKE: (self.fabrication, self.stage, self.cuts),
         }
         left, right = QWidget(), QWidget()
         second.setMaximumWidth(SECOND)
@@ -87,19 +87,19 @@ class Pages(QWidget):
         column((self.stack, 1), on=self, margins=(10, 0, 10, 2))
         self._show()
 
-    def turn(self, page: Page) -> None:
+    def turn(self, page: WindowPage) -> None:
         """Show a page; what is done there keeps its state."""
         if page is self.page:
             return
-        if self.page is not Page.SHAPE:
+        if self.page is not WindowPage.SHAPE:
             self._before = self.page
         self.page = page
         self.cuts.bar.play.setChecked(False)
-        if self.stage.comparing and page is not Page.DESIGN:
+        if self.stage.comparing and page is not WindowPage.DESIGN:
             self.stage.set_comparing(False)
         self._show()
         self._share(self.window().width())
-        if page is Page.SHAPE:
+        if page is WindowPage.SHAPE:
             self.target.view.setFocus()
         elif self.target.view.hasFocus() or self.window().focusWidget() is None:
             self.stage.take_focus()
@@ -109,18 +109,18 @@ class Pages(QWidget):
         shown = self._parts[self.page]
         for part in {part for parts in self._parts.values() for part in parts}:
             part.setVisible(part in shown)
-        self.target.set_editing(self.page is Page.SHAPE)
+        self.target.set_editing(self.page is WindowPage.SHAPE)
 
     def _follow_board(self, editing: bool) -> None:
         """The drawing board is the first page: opening and leaving it turns the pages."""
         if editing:
-            self.turn(Page.SHAPE)
-        elif self.page is Page.SHAPE:
+            self.turn(WindowPage.SHAPE)
+        elif self.page is WindowPage.SHAPE:
             self.turn(self._before)
 
     def _follow_comparison(self, comparing: bool) -> None:
         if comparing:
-            self.turn(Page.DESIGN)
+            self.turn(WindowPage.DESIGN)
 
     # what has the keyboard -----------------------------------------------------------------------------------------
 
@@ -132,14 +132,14 @@ class Pages(QWidget):
     @property
     def in_sight(self) -> TargetView | CutView | StagePanel:
         """The view that is zoomed."""
-        if self.page is Page.SHAPE:
+        if self.page is WindowPage.SHAPE:
             return self.target.view
         return self.cuts.view if self._at_cuts else self.stage
 
     @property
     def _at_cuts(self) -> bool:
         focused = self.window().focusWidget()
-        return self.page is Page.MAKE and focused is not None and self.cuts.isAncestorOf(focused)
+        return self.page is WindowPage.MAKE and focused is not None and self.cuts.isAncestorOf(focused)
 
     def stop_playing(self) -> None:
         """Let everything stand still."""
@@ -149,10 +149,10 @@ class Pages(QWidget):
     def show_cuts(self) -> None:
         """Go to the sheet as it is cut, or back from it."""
         if self._at_cuts:
-            self.turn(Page.DESIGN)
+            self.turn(WindowPage.DESIGN)
             self.stage.take_focus()
         else:
-            self.turn(Page.MAKE)
+            self.turn(WindowPage.MAKE)
             self.cuts.view.setFocus()
 
     # widths --------------------------------------------------------------------------------------------------------
@@ -168,7 +168,7 @@ class Pages(QWidget):
             left, _, right = self._moved[self.page]
             width = self.splitter.width() - 2 * self.splitter.handleWidth()
         if not self._whole:
-            left = width - right if self.page is Page.SHAPE else left
+            left = width - right if self.page is WindowPage.SHAPE else left
             self.splitter.setSizes([left, max(width - left - right, 0), right])
 
     def _give_whole_width(self, whole: bool) -> None:
@@ -185,7 +185,7 @@ class Pages(QWidget):
 
     def restore(self, settings: QSettings) -> None:
         """Restore the columns of the last session."""
-        for page in Page:
+        for page in WindowPage:
             saved = settings.value(f"columns-{page.value}")
             if isinstance(saved, list) and len(saved) == 3 and all(str(size).isdecimal() for size in saved):
                 self._moved[page] = [int(size) for size in saved]

@@ -22,7 +22,7 @@ from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.target.target_presenter import StartPresenter, TargetPresenter
 from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.open_dialogs import Dialogs
-from kirigami_studio.gui.window.pages import Page, Pages
+from kirigami_studio.gui.window.pages import Pages, WindowPage
 from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.stage_panel import StagePresenter
 from kirigami_studio.gui.window.welcome_page import WelcomePresenter
@@ -184,7 +184,7 @@ class Presenters(QObject):
         self.designs.compare_wanted.connect(self.comparison.compare_with)
         stage.comparing_changed.connect(self.comparison.follow)
         stage.comparing_changed.connect(self.all_designs.leave_to)
-        self._pages.turned.connect(lambda page: self.all_designs.leave_to(page is not Page.DESIGN))
+        self._pages.turned.connect(lambda page: self.all_designs.leave_to(page is not WindowPage.DESIGN))
         self.all_designs.shown_changed.connect(self._make_way)
 
     def _connect_target(self) -> None:
@@ -233,13 +233,13 @@ class Presenters(QObject):
         pasting.file_wanted.connect(files.open)
         self._pages.welcome.pairs.chosen.connect(files.open_pair)
         for opened in (services.project.opened, services.project.recovery.recovered):
-            opened.connect(lambda: self._pages.turn(Page.DESIGN))
-        services.project.begun.connect(lambda: self._pages.turn(Page.SHAPE))
+            opened.connect(lambda: self._pages.turn(WindowPage.DESIGN))
+        services.project.begun.connect(lambda: self._pages.turn(WindowPage.SHAPE))
 
     def show_pairs(self) -> None:
         """Go to the finished pairs."""
         pairs = self._pages.welcome.pairs
-        self._pages.turn(Page.SHAPE)
+        self._pages.turn(WindowPage.SHAPE)
         pairs.read(self._services.session.queue)
         pairs.list.setFocus()
 
@@ -249,7 +249,7 @@ class Presenters(QObject):
         """A run has begun."""
         self.designs.show_run()
         self.all_designs.show_run()
-        self._pages.turn(Page.DESIGN)
+        self._pages.turn(WindowPage.DESIGN)
         self.stage.show_run()
         self.making.show_run()
         self.run.show_run(total)
@@ -321,7 +321,7 @@ class Presenters(QObject):
         if not shown:
             pages.stage.take_focus()
             return
-        pages.turn(Page.DESIGN)
+        pages.turn(WindowPage.DESIGN)
         pages.stage.player.play.setChecked(False)
 
     def refit(self, on: bool) -> None:

@@ -15,14 +15,14 @@ from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.widgets.canvas import ZOOM_STEP
 from kirigami_studio.gui.window.appearance import Appearance
-from kirigami_studio.gui.window.pages import WORDS, Page, Pages
+from kirigami_studio.gui.window.pages import WORDS, Pages, WindowPage
 from kirigami_studio.gui.window.presenters import Presenters
 from kirigami_studio.gui.window.stage_panel import StagePanel
 
 #: Commands that switch what is drawn over the layout.
 OVERLAY_COMMANDS = {f"show_{overlay.value}": overlay for overlay in Overlay}
 #: Commands that turn the pages of the window.
-PAGE_COMMANDS = {f"page_{page.value}": page for page in Page}
+PAGE_COMMANDS = {f"page_{page.value}": page for page in WindowPage}
 
 
 def commands(
@@ -47,14 +47,14 @@ def commands(
 def _turns(pages: Pages) -> tuple[Command, ...]:
     """The pages of the window, on keys 1, 2 and 3."""
 
-    def turn(number: int, name: str, page: Page) -> Command:
+    def turn(number: int, name: str, page: WindowPage) -> Command:
         (text, tip), shown = WORDS[page], partial(_is_on, page)
         return Command(tr("&View"), name, tr(text), tr(tip), partial(pages.turn, page), f"{number}", checked_when=shown)
 
     return tuple(turn(number, name, page) for number, (name, page) in enumerate(PAGE_COMMANDS.items(), start=1))
 
 
-def _is_on(page: Page, now: WindowState) -> bool:
+def _is_on(page: WindowPage, now: WindowState) -> bool:
     return now.page == page.value
 
 

@@ -548,7 +548,7 @@ def holes(arguments: argparse.Namespace) -> int:
 
 
 def pinned(arguments: argparse.Namespace) -> int:
-    """Targets designed for two layers of panels on pins; 1 when the pieces of one cannot be put together."""
+    """Targets made of pieces on pins; 1 when those of one cannot be put together."""
     from kirigami_studio.lab.benchmark.pinned_suite import design_pinned
 
     line = ProgressLine()

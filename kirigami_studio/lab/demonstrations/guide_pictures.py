@@ -17,7 +17,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.gui.target.target_view import Tool
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lab.demonstrations.offscreen_session import GUIDE_WIDTH, OffscreenSession, main
 
 #: Colours of a picture: the window has few, and smooth edges need the rest.
@@ -35,7 +35,7 @@ class GuidePictures(OffscreenSession):
         window.resize(SIZE)
         window.show()
         services.targeting.start_with("heart")
-        window.pages.turn(Page.SHAPE)
+        window.pages.turn(WindowPage.SHAPE)
         window.presenters.welcome.begin()
         page = window.welcome
         self.until(lambda: page.ready and self._target_name() == "heart", "the sample did not come")

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from kirigami_studio.export.dxf_reading import DxfContent, read_content
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lab.demonstrations.offscreen_session import (
     DESIGNS,
     OffscreenSession,
@@ -146,14 +146,14 @@ class Screencast(OffscreenSession):
         self.press_on(width)
         width.setValue(HEART_MM)
         self.hold(1.6)
-        self.turn(Page.MAKE)
+        self.turn(WindowPage.MAKE)
         material = self.window.fabrication.material
         self.go_to(material)
         material.showPopup()
         self.hold(3.2)
         material.hidePopup()
         self.hold(0.6)
-        self.turn(Page.DESIGN)
+        self.turn(WindowPage.DESIGN)
 
     def generate_designs(self) -> None:
         """Eight designs, while they come and are fitted."""
@@ -196,7 +196,7 @@ class Screencast(OffscreenSession):
     def connectors(self) -> None:
         """The cuts, one wider connector, and the order of cutting."""
         self.say("6   The cuts: every line is cut once, every dot is a connector")
-        self.turn(Page.MAKE)
+        self.turn(WindowPage.MAKE)
         self.hold(3.0)
         page = self.window.cuts
         transform = page.view.transform()
@@ -224,7 +224,7 @@ class Screencast(OffscreenSession):
             self.shoot(1.0 / FRAMES_A_SECOND)
         self.hold(1.0)
 
-    def turn(self, page: Page) -> None:
+    def turn(self, page: WindowPage) -> None:
         """Press a page's button in the bar on top."""
         self.press_on(self.window.page_buttons[page])
 

@@ -27,7 +27,7 @@ from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
 from kirigami_studio.gui.window.application import create_window
-from kirigami_studio.gui.window.pages import Page
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
 from kirigami_studio.lab.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
 from kirigami_studio.project import recovery
@@ -401,14 +401,14 @@ class StateSheet(BoardStates):
         self.until(lambda: not page.problems.isVisible(), "undo did not bring the connectors back")
         page.view.gestures.select(frozenset())
         self.window.commands["cuts"].trigger()
-        self.window.pages.turn(Page.MAKE)
+        self.window.pages.turn(WindowPage.MAKE)
         self.all_sizes("options")
         click(fabrication.options.engrave)
         self.until(lambda: page.view.shows_name, "the name was not engraved")
         self.all_sizes("cuts-name")
         self.window.commands["undo"].trigger()
         self.until(lambda: not page.view.shows_name, "undo did not take the name off")
-        self.window.pages.turn(Page.DESIGN)
+        self.window.pages.turn(WindowPage.DESIGN)
 
     def exported(self) -> None:
         """The report of a cut file and the material editor, in both themes."""
