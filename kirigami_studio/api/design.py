@@ -368,7 +368,7 @@ class Design:
 
     @property
     def family(self) -> str:
-        """``closed`` where the whole sheet shows the target, ``cover`` where parts of it are cut away."""
+        """``closed`` where the whole sheet shows the target, ``cover`` where parts are cut away."""
         return self.candidate.family.value
 
     @property

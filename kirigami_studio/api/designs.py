@@ -98,7 +98,7 @@ class Designs(Sequence[Design]):
         return np.array([design.ratios for design in self])
 
     def why_covered(self) -> str:
-        """Why there are designs of which parts are cut away beside closed ones; "" where there are none."""
+        """Say why covers stand beside closed designs; "" where there are none."""
         why = why_covered(self.document.candidates, self.document.target, self.document.settings.start)
         return "" if why is None else why.text
 

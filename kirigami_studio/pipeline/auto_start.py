@@ -1,4 +1,4 @@
-"""The start for a target, where that is left to the run: a rectangle, unless short fits of another one promise more.
+"""The start for a target: a rectangle, unless short fits of another one promise more.
 
 Every arm with parallel flanks takes a corner of the sheet (``outlines.turning``), and a tip or a hollow on the axis a
 corner or a hollow there: so a hexagon, a triangle, a disk, and rectangles with a gable or a notch are tried beside the
@@ -89,7 +89,7 @@ def _weighed(start: StartShape, request: Request) -> StartShape:
 
 
 def _worth(request: Request, trials: Trials) -> float:
-    """What short fits from the uniform sheet of a start reach: the best exact IoU, less the price of uneven panels."""
+    """Best exact IoU of short fits from a start's uniform sheet, less the price of uneven panels."""
     grid = request.grid or predicted_for(request).grid
     poses = first_angles(request.silhouette, grid, 1, request.symmetry, request.start)
     # Poses without a symmetry are tried too: symmetric ones come first.

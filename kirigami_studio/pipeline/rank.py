@@ -124,7 +124,7 @@ class Ranking:
         return (2.0 * self.regular) ** 2
 
     def prices(self, candidate: Candidate) -> dict[str, float]:
-        """What is taken off the IoU, by the code of the reason that names it."""
+        """Prices taken off the IoU, by the code of the reason that names each."""
         scale, figures = self.scale, candidate.score.evenness
         thinness = max(0.0, 1.0 - min(figures.least_edge, figures.least_neck) / SLENDER)
         return {

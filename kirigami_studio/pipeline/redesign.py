@@ -180,7 +180,7 @@ def covered(
     least_panel: float = 0.0,
     even: float = 0.0,
 ) -> Trimmed:
-    """Make another design of a candidate: one that covers the target, of which parts are cut away.
+    """Make a cover of a candidate: a sheet fitted to cover the target, parts cut away.
 
     Parameters
     ----------

@@ -157,7 +157,7 @@ class Request(DesignChoices):
 
     @property
     def may_cover(self) -> bool:
-        """Whether its run makes designs that cover the target, where that shows more of it than closed sheets do.
+        """Whether its run may make designs that cover the target.
 
         Like fits from the uniform sheet they do not depend on the seed, and are left out where these are.  A second
         target is for whole sheets, and pieces on pins have notches of their own.

@@ -106,7 +106,7 @@ GRACE = 1.0
 
 
 def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Event]:
-    """Sample, score, polish, fit from the uniform sheet, search if asked for, finish, cover, trim if asked for, rank.
+    """Sample, score, polish, fit from the uniform sheet, search, finish, cover, trim, rank.
 
     The result does not depend on who polishes, on the number of workers, or on the order in which they end; only a
     budget makes it depend on the clock.  All samples are returned: a duplicate of a better sample is kept as it was
@@ -160,8 +160,9 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
 
 
 def with_grid(request: Request, pool: Pool | None = None) -> Request:
-    """The request on the start and grid that the run takes, where these were left to it: those of the design that
-    samples are near, else those that suit the target, see :func:`start_choice` and :func:`grid_choice`.
+    """The request on the start and grid that its run takes, where these were left open.
+
+    Those of the design that samples are near, else see :func:`start_choice` and :func:`grid_choice`.
 
     Raises
     ------
@@ -413,7 +414,7 @@ class _Work:
         yield from self._replaced(chosen, [TrimTask(candidate) for candidate in chosen], TRIMMING)
 
     def cover(self) -> Iterator[Event]:
-        """Make designs that cover the target of the best that differ, where closed ones show it badly."""
+        """Make covers of the best designs that differ, where closed ones match badly."""
         if not needs_cover(self.request, self.found):
             return
         chosen = worth_a_fit(self.found, self.ranking)[:COVERS]
@@ -462,7 +463,7 @@ class _Work:
 
 
 def needs_cover(request: Request, found: Sequence[Candidate]) -> bool:
-    """Whether designs that cover the target may show more of it than the closed ones that were found."""
+    """Whether covers may show more of the target than the closed designs found."""
     if not request.may_cover:
         return False
     if no_closed_sheet_shows(request.silhouette, request.start):

@@ -245,7 +245,7 @@ def first_of_families(candidates: Sequence[Candidate]) -> dict[Family, tuple[int
 
 
 def why_covered(candidates: Sequence[Candidate], target: Outline | None, start: StartShape = RECTANGLE) -> Note | None:
-    """Why there are designs of which parts are cut away beside closed ones: what each family shows at most.
+    """Say why covers stand beside closed designs: the best match of each family.
 
     Returns
     -------

@@ -59,7 +59,7 @@ class Made:
 
     @property
     def closed(self) -> Candidate:
-        """The first that was not made to cover the target; where designs were trimmed, it is trimmed too."""
+        """The first design that is no cover; where designs were trimmed, it is trimmed too."""
         return next((one for one in (self.best, *self.candidates) if one.origin is not Origin.COVERED), self.best)
 
     @property
@@ -110,7 +110,7 @@ def design_alone(choices: Sequence[Request]) -> Made:
 
 
 def design_figures(made: Sequence[Made]) -> dict[str, object]:
-    """Figures over all targets, and one line for each; of the first closed design where nothing else is said.
+    """Figures over all targets, and one line for each, of the first closed design by default.
 
     Returns
     -------
