@@ -109,7 +109,7 @@ class PosedDesign:
         return boundary
 
     def silhouette(self, phi: float) -> list[FloatArray]:
-        """Rings (P, 2) of what is shown at angle ``phi``, world: the outer one, then those of holes; voids filled."""
+        """Rings (P, 2) of the silhouette at ``phi``, world: the outer one, then holes; voids filled."""
         nodes = self.nodes(phi)
         outline = self.outline(nodes, phi)
         removed = self.removed(nodes, phi)

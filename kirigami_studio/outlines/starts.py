@@ -103,7 +103,7 @@ class StartShape:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is the paper's: a rectangle of square cells; also one that a run has not chosen yet."""
+        """Whether it is the paper's rectangle of square cells, or left to the run."""
         return self.outline is None and self.aspect is None
 
     @property
@@ -140,7 +140,7 @@ TURNS_BACK = math.radians(170.0)
 
 
 def no_closed_sheet_shows(target: Outline, start: StartShape = RECTANGLE) -> bool:
-    """Whether a target turns back too far for any closed sheet, or has more arms than a start has sides."""
+    """Whether a target turns back too far, or has more arms than a start has sides."""
     return turn_back(target).angle >= TURNS_BACK or sides_needed(target) > start.sides
 
 

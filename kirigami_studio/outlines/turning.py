@@ -61,7 +61,7 @@ def turn_back(outline: Outline) -> TurnBack:
 
 
 def sides_needed(outline: Outline) -> int:
-    """Fewest sides of a flat sheet whose edge cuts become the sides of an outline, by their directions alone.
+    """Fewest sides of a flat sheet that an outline needs, by its directions alone.
 
     What one side of the sheet becomes has directions within less than a half turn, so round the end of an arm with
     parallel flanks another side begins: a star of many arms needs as many sides.
@@ -75,7 +75,7 @@ def sides_needed(outline: Outline) -> int:
 
 
 def _sides_from(turns: FloatArray) -> int:
-    """How many sides are needed when the first one begins with the first edge; turns (E,) follow the edges."""
+    """Number of sides if the first begins with the first edge; turns (E,) follow the edges."""
     sides, low, high, direction = 1, 0.0, 0.0, 0.0
     for turn in turns[:-1]:
         direction += turn

@@ -33,7 +33,7 @@ class FitReport:
 
 
 def worth_fitting_again(candidate: Candidate) -> bool:
-    """Whether a fit may change a design: what a hand has made stays, and what was trimmed by hand."""
+    """Whether a fit may change a design: designs edited or trimmed by hand stay."""
     return candidate.origin is Origin.COVERED or (candidate.origin is not Origin.EDITED and candidate.trim is None)
 
 

@@ -147,9 +147,7 @@ def fit_cover(
 
 @lru_cache(maxsize=16)
 def notches_filled(target: Outline, least: float = DEEP_FROM) -> EasyShape | None:
-    """A target with its narrowest notches filled until closed sheets show it; None where it turns back by less than
-    ``least`` (radians).
-    """
+    """Fill the narrowest notches of a target that turns back by ``least`` (radians) or more."""
     if turn_back(target).angle < least:
         return None
     for radius in DISCS:
