@@ -106,7 +106,7 @@ def test_that_every_control_has_a_name_and_a_tooltip(options: MainWindow) -> Non
         page.bar.play,
         page.bar.slider,
     ]
-    assert len(parts) == 24
+    assert len(parts) == 25
     for part in parts:
         assert part.accessibleName() and part.toolTip(), part.objectName()
     for length in (options.fabrication.options.tab_mm, page.hinges.width_mm):

@@ -30,6 +30,9 @@ FIRST_BYTES = {
     ".stl": b"Kirigami Studio",
     ".3mf": b"PK",
     ".obj": b"# Kirigami Studio",
+    ".fold": b'{"file_spec":1.2',
+    ".xml": b"<mujoco",
+    ".csv": b"part,layer,",
 }
 
 
@@ -54,7 +57,7 @@ def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: 
     designed.fabrication.lengths["connector_mm"].setValue(20.0)
     until(lambda: not designed.fabrication.export.isEnabled())
     allowed = {extension: action.isEnabled() for extension, action in designed.fabrication.kinds.items()}
-    assert {extension for extension, enabled in allowed.items() if enabled} == {".png", ".gif", ".html"}
+    assert {extension for extension, enabled in allowed.items() if enabled} == {kind.extension for kind in FILE_KINDS if not kind.cuts}
     assert designed.fabrication.more.isEnabled()
 
 

@@ -25,7 +25,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.studio.designing import request_for
 
 Until = Callable[[Callable[[], bool]], None]
-LISTED = ["rectangle", "square", "circle", "ellipse:3:2", "triangle", "hexagon"]
+LISTED = ["auto", "rectangle", "square", "circle", "ellipse:3:2", "triangle", "hexagon"]
 
 
 def choose(window: MainWindow, value: str) -> None:
@@ -46,12 +46,13 @@ def test_that_the_start_is_a_choice_of_named_outlines_and_one_undo_step(window: 
     settings, session = window.settings, window.session
     assert [settings.start.itemData(row) for row in range(len(LISTED))] == LISTED
     assert settings.start.isVisible() and settings.start.currentText() == "Rectangle"
-    for name in LISTED[1:]:
+    names = ["rectangle", *LISTED[2:], "auto"]
+    for name in names[1:]:
         choose(window, name)
         assert session.document.settings.start == start_shape(name)
         assert settings.start.currentData() == name and settings.start.itemData(LISTED.index(name), 3)
     assert session.history.undo_label == "Change the start outline"
-    for name in reversed(LISTED[:-1]):
+    for name in reversed(names[:-1]):
         window.commands["undo"].trigger()
         assert settings.start.currentData() == name
     assert session.document.settings.start == RECTANGLE

@@ -47,14 +47,16 @@ class PictureMaker(QObject):
         return {**named, tr("Whole window"): self._window}
 
     def view_at_work(self) -> QWidget:
-        """The view that has the keyboard, else the largest one in sight."""
+        """The view that has the keyboard, else the largest drawing in sight, before lists."""
         focused: QWidget | None = self._window.focusWidget()
         while focused is not None and focused is not self._window:
             if isinstance(focused, VIEWS) and focused.isVisible():
                 return focused
             focused = focused.parentWidget()
         views = [view for view in self.views().values() if view is not self._window]
-        return max(views, key=lambda view: view.width() * view.height(), default=self._window)
+        return max(
+            views, key=lambda view: (isinstance(view, Canvas), view.width() * view.height()), default=self._window
+        )
 
     def write(self, view: QWidget, path: Path) -> None:
         """Write a picture of a view; ``.svg`` is drawn in lines, everything else in pixels."""

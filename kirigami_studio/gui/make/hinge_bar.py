@@ -187,8 +187,4 @@ def _selection_texts(hinges: frozenset[int], cut: int) -> tuple[str, ...]:
     named = tr_n("{count} connector", "{count} connectors", count)
     if not cut:
         return named, f"{count}"
-    return (
-        tr_n("{count} connector, {cut} cut through", "{count} connectors, {cut} cut through", count, cut=cut),
-        named,
-        f"{count}",
-    )
+    return tr("{cut} of {count} cut through", cut=cut, count=count), named, f"{count}"

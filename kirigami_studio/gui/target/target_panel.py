@@ -255,7 +255,7 @@ class TargetPanel(Card):
         with QSignalBlocker(self.fill):
             self.fill.setChecked(holes == 0)
         words = tr_n("{count} hole", "{count} holes", holes + filled)
-        self.fill.setText(tr("Fill &holes ({holes})", holes=words))
+        self.fill.setText(tr("Fi&ll holes ({holes})", holes=words))
 
     def arrangements(self) -> frozenset[str]:
         """What can be done with the selected objects while the board is open."""

@@ -110,6 +110,9 @@ class Pages(QWidget):
         for part in {part for parts in self._parts.values() for part in parts}:
             part.setVisible(part in shown)
         self.target.set_editing(self.page is WindowPage.SHAPE)
+        for outer in self._outer:
+            if (layout := outer.layout()) is not None:
+                layout.activate()  # the splitter bounds a column by what it held before, otherwise
 
     def _follow_board(self, editing: bool) -> None:
         """The drawing board is the first page: opening and leaving it turns the pages."""

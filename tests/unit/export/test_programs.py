@@ -212,7 +212,7 @@ def test_that_the_table_of_programs_has_the_files_and_sizes_of_their_machines(re
 def test_that_colours_of_layers_and_names_are_those_of_the_recipe(
     make_design: MakeDesign, tmp_path: Path, recipes: str
 ) -> None:
-    assert "`RELIEF` magenta, `SLITS` red, `EDGE_SLITS` green, `OUTLINE` blue" in recipes
+    assert "`RELIEF` magenta, `SLITS` red, `EDGE_SLITS` green, `HOLES` cyan, `OUTLINE` blue" in recipes
     assert "An engraved name is black" in recipes
     colours = {"RELIEF": "#ff00ff", "SLITS": "#ff0000", "EDGE_SLITS": "#00ff00", "OUTLINE": "#0000ff"}
     colours[NAME_LAYER] = "#000000"
