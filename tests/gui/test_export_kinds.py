@@ -57,7 +57,9 @@ def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: 
     designed.fabrication.lengths["connector_mm"].setValue(20.0)
     until(lambda: not designed.fabrication.export.isEnabled())
     allowed = {extension: action.isEnabled() for extension, action in designed.fabrication.kinds.items()}
-    assert {extension for extension, enabled in allowed.items() if enabled} == {kind.extension for kind in FILE_KINDS if not kind.cuts}
+    assert {extension for extension, enabled in allowed.items() if enabled} == {
+        kind.extension for kind in FILE_KINDS if not kind.cuts
+    }
     assert designed.fabrication.more.isEnabled()
 
 
