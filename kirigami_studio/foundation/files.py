@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import tomllib
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -83,7 +84,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     if any(line.count(b".") > MOST_DOTS for line in content.splitlines()):
         raise ValueError(f"a line of it holds more than {MOST_DOTS} dots")
     try:
-        entries = tomllib.loads(content.decode("utf-8-sig"))  # editors of Windows write a mark at the beginning
+        entries = tomllib.loads(content.removeprefix(BOM_UTF8).decode())  # editors of Windows write a mark first
         _check_whole_numbers(entries)
     except RecursionError as error:
         raise ValueError("it is nested too deep") from error

@@ -71,6 +71,13 @@ def import_exporters() -> None:
 
 
 @cache
+def import_verdicts() -> None:
+    """What cards say of designs, as soon as a project is open."""
+    with quietly():
+        from kirigami_studio.studio import verdict as _verdict  # noqa: F401
+
+
+@cache
 def import_as_cut() -> None:
     """What closes sheets as cut, judges them, and tries fixes."""
     with quietly():

@@ -20,6 +20,7 @@ from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.picture_record import LARGEST_PICTURE, TracedPicture
 from kirigami_studio.project.recovery import RecoveryNote
+from kirigami_studio.studio import importing
 from kirigami_studio.studio.targets import Picture, reduced_picture
 
 if TYPE_CHECKING:
@@ -121,6 +122,7 @@ def loading(path: Path, folder: Path, on_disk: OnDisk, cancel: Cancel) -> Iterat
     except (OSError, ProjectError) as error:
         left_out = tr("The project's photo could not be loaded and was left out. {reason}", reason=error)
         notes = (*notes, left_out)
+    importing.import_verdicts()
     yield Project(opened.document, picture, notes)
 
 
