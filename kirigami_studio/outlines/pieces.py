@@ -14,6 +14,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import tr_n
 from kirigami_studio.outlines.crossings import CLEARLY_MEANT
+from kirigami_studio.outlines.outline import MOST_HOLES
 
 #: Shares of the area below this are slivers of rounding or noding and not worth a note.
 WORTH_SAYING = 1e-6
@@ -27,12 +28,20 @@ MOST_WINDINGS = 30_000_000
 LEAST_BREADTH, STROKED_BREADTH, MOSTLY = 0.125, 0.2, 0.5
 #: The piece is simplified by this share first.
 COARSENESS = 0.004
+#: Each crossing of rings encloses one more face: drawings have fewer, scribbles took ten seconds.
+MOST_ENCLOSED = 10_000
 #: A piece frames what lies in a hole that takes more than this share of the area within the outer ring.
 FRAMED = 0.25
 
 
 def painted(rings: Sequence[FloatArray], is_even_odd: bool) -> BaseGeometry:
-    """The region of rings (P, 2) by the even-odd or the nonzero rule, holes left open."""
+    """The region of rings (P, 2) by the even-odd or the nonzero rule, holes left open.
+
+    Raises
+    ------
+    TargetError
+        Rings that cross at more than :data:`MOST_ENCLOSED` places.
+    """
     closed = [ring if np.array_equal(ring[0], ring[-1]) else np.concatenate([ring, ring[:1]]) for ring in rings]
     closed = [ring for ring in closed if len(ring) > 3]
     if len(closed) == 1 and (whole := Polygon(closed[0])).is_valid:
@@ -40,6 +49,8 @@ def painted(rings: Sequence[FloatArray], is_even_odd: bool) -> BaseGeometry:
     if not closed:
         return Polygon()
     faces = shapely.get_parts(shapely.polygonize([shapely.unary_union([LineString(ring) for ring in closed])]))
+    if len(faces) - len(closed) > MOST_ENCLOSED:
+        raise TargetError("contour.too_many_crossings", limit=MOST_ENCLOSED)
     starts, ends = np.concatenate([ring[:-1] for ring in closed]), np.concatenate([ring[1:] for ring in closed])
     if len(faces) * len(starts) > MOST_WINDINGS:
         return _by_direction(closed, is_even_odd)
@@ -135,7 +146,7 @@ def largest_piece(region: BaseGeometry) -> tuple[Polygon, tuple[str, ...]]:
     holes = [hole for hole in missing if isinstance(hole, Polygon) and hole.area > WORTH_SAYING * piece.area]
     whole, kept = piece, []
     for hole in sorted((Polygon(hole.exterior) for hole in holes), key=lambda hole: hole.area, reverse=True):
-        if whole.contains_properly(hole):
+        if len(kept) < MOST_HOLES and whole.contains_properly(hole):
             kept.append(hole)
             whole = Polygon(piece.exterior, [each.exterior for each in kept])
     if islands := sum(len(hole.interiors) for hole in holes):

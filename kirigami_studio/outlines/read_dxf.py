@@ -100,6 +100,8 @@ MOST_ENTITIES = 100_000
 #: Steps of unfolding, one for each entity; a copy of a block takes as long as so many entities.
 MOST_STEPS, COPY = 2_000_000, 40
 DEEPEST_BLOCK = 16
+#: Share of the time that unfolding entities may take: joining and judging their lines takes twice as long again.
+UNFOLDING = 0.35
 MOST_MEGABYTES = 50
 #: Share of the time for the text of a file; its entities take as long again.
 STRICT_SHARE = 0.5
@@ -435,7 +437,7 @@ def _unfolded(
     if around.depth > DEEPEST_BLOCK:
         raise TargetError("dxf.blocks_too_deep", limit=DEEPEST_BLOCK)
     for entity in entities:
-        budget.check()
+        budget.check(UNFOLDING)
         if not isinstance(entity, DXFGraphic) or entity.dxf.invisible:
             continue
         layer = around.layer if entity.dxf.layer == LAYER_0 else entity.dxf.layer
@@ -480,7 +482,7 @@ def _flattened(seen: Seen, drawing: Drawing, budget: TimeBudget) -> tuple[list[L
     found: list[tuple[Shown, list[Curve]]] = []
     damaged: list[Exception] = []
     for shown in (*seen.curves, *seen.fills):
-        budget.check()
+        budget.check(UNFOLDING)
         try:
             curves = [make_path(shown.entity)] if shown.entity.dxftype() in CURVES else _edges(shown.entity)
         except (DXFError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
@@ -503,7 +505,7 @@ def _flattened(seen: Seen, drawing: Drawing, budget: TimeBudget) -> tuple[list[L
     lines: list[Line] = []
     fills: list[Fill] = []
     for (entity, name, clip), curves in found:
-        budget.check()
+        budget.check(UNFOLDING)
         chains = [_vertices(curve, distance) for curve in curves]
         line = _line(entity, chains[0], name, layers.get(name.lower()))
         if entity.dxftype() in CURVES:

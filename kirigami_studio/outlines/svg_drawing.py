@@ -59,7 +59,8 @@ MARKED, MOST_MARKERS = frozenset({"path", "line", "polyline", "polygon"}), 2_000
 MARKER_SIZE = ("markerWidth", "markerHeight")
 #: Letters of a shape of CSS that is looked at.
 LONGEST_SHAPE = 10_000
-TRANSFORM = re.compile(r"([a-zA-Z]+)\s*\(([^()]*)\)")
+# Names begin at their first letter alone and are short: a long word without a parenthesis took half a minute.
+TRANSFORM = re.compile(r"(?<![a-zA-Z])([a-zA-Z]{1,16})\s*\(([^()]*)\)")
 Paint = tuple[float, float, float, float]
 
 
