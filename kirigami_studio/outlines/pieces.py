@@ -144,7 +144,7 @@ def largest_piece(region: BaseGeometry) -> tuple[Polygon, tuple[str, ...]]:
         )
     missing = shapely.get_parts(piece.difference(region))
     holes = [hole for hole in missing if isinstance(hole, Polygon) and hole.area > WORTH_SAYING * piece.area]
-    whole, kept = piece, []
+    whole, kept = piece, list[Polygon]()
     for hole in sorted((Polygon(hole.exterior) for hole in holes), key=lambda hole: hole.area, reverse=True):
         if len(kept) < MOST_HOLES and whole.contains_properly(hole):
             kept.append(hole)
