@@ -13,6 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import shapely
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial.distance import cdist
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -44,7 +46,7 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces, smallest_ligament
 from kirigami_studio.fabricate.joints import Pair, joined_pairs
 from kirigami_studio.fabricate.tabs import joined_ring
-from kirigami_studio.fabricate.trimmed_sheet import STRAIGHT_MM
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.foundation.sentences import sentence
@@ -478,24 +480,20 @@ def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     """Whether the sheet can close, by the connectors that were read from its file.
 
     Of a plan whose connectors are all centred, every one has to be found, as wide as planned, and every void has to
-    be a parallelogram within ``VOID_MISS_UM``, and in a trimmed sheet by what its rim is simplified.  As wide as
-    planned is as wide as asked for, but for the connectors that the plan lists as narrowed.  Of other plans, the user
-    should know by how much voids miss that.
+    be a parallelogram within ``VOID_MISS_UM``.  As wide as planned is as wide as asked for, but for the connectors that
+    the plan lists as narrowed.  Of other plans, the user should know by how much voids miss that.
     """
+    voids = _without_corners(voids, plan)
     found = {"connectors": len(voids.connectors), "voids": voids.voids, "miss_um": voids.miss_um}
     centred = plan.void_miss_mm is not None and 1e3 * plan.void_miss_mm < VOID_MISS_UM
     if centred:
         narrowest, planned = voids.narrowest_mm, int(np.sum(~plan.hinges.removed))
-        # A corner of a hole that is as round as a slot ends looks like one more connector.
-        most = math.inf if plan.on_layer(Layer.HOLES) else planned
-        lost = not planned <= len(voids.connectors) <= most
-        if lost or narrowest < plan.min_connector_mm - 2.0 * WIDTH_TOLERANCE_MM:
+        if len(voids.connectors) != planned or narrowest < plan.min_connector_mm - 2.0 * WIDTH_TOLERANCE_MM:
             widths = {"narrowest_mm": narrowest, "planned": planned, "planned_mm": plan.min_connector_mm}
             return [Finding.judged(False, "verify.connectors_lost", connectors=len(voids.connectors), **widths)]
         if narrow := _too_narrow(voids, plan):
             return narrow
-        # Rims of trimmed sheets leave out vertices nearly on a line, on either side of a connector.
-        if voids.miss_um <= VOID_MISS_UM + (2e3 * STRAIGHT_MM if plan.trimmed else 0.0):
+        if voids.miss_um <= VOID_MISS_UM:
             return [Finding.judged(True, "verify.voids_close", narrowest_mm=narrowest, **found)]
     if voids.where is None:
         return []
@@ -503,12 +501,34 @@ def void_findings(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     return [Finding("verify.voids_miss", {**found, "x": x, "y": y}, ok=not centred, warning=not centred)]
 
 
+def _places(plan: CutPlan) -> FloatArray:
+    """Where the connectors of a plan turn: (T, 2), mm."""
+    places = plan.hinges.position if plan.centres is None else plan.centres
+    return np.asarray(places[~plan.hinges.removed])
+
+
+def _without_corners(voids: FoundVoids, plan: CutPlan) -> FoundVoids:
+    """The connectors less corners of holes: cut as slots, these are as round as ends of slits.
+
+    Only as many are left out as there are more than planned, and only on the rims of holes.
+    """
+    places = _places(plan)
+    rims = shapely.MultiLineString(list(plan.boundary.interiors))
+    if rims.is_empty or not 0 < len(places) < len(voids.connectors):
+        return voids
+    centres = np.array([connector.centre for connector in voids.connectors])
+    planned = linear_sum_assignment(cdist(places, centres))[1]
+    others = np.setdiff1d(np.arange(len(centres)), planned)
+    on_rim = shapely.dwithin(shapely.points(centres[others]), rims, plan.kerf_mm + plan.connector_mm)
+    corners = set(others[on_rim].tolist())
+    return replace(voids, connectors=tuple(one for at, one in enumerate(voids.connectors) if at not in corners))
+
+
 def _too_narrow(voids: FoundVoids, plan: CutPlan) -> list[Finding]:
     """Connectors of the file that are narrower than asked for, or, of those listed as narrowed, than listed."""
     hinges = plan.hinges
     there = np.flatnonzero(~hinges.removed)
-    places = hinges.position if plan.centres is None else plan.centres
-    matched = matched_connectors(voids, places[there])
+    matched = matched_connectors(voids, _places(plan))
     if matched is None:
         return []
     least = hinges.asked_mm.copy()

@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeVar
 
 import numpy as np
 import shapely
@@ -95,6 +96,7 @@ USUAL_PANELS = 140.0
 BEST_PROPORTIONS = 0.66
 
 #: Choices that are remembered by what they depend on, oldest first, and how many of them.
+Choice = TypeVar("Choice")
 _CHOSEN: dict[Hashable, GridChoice] = {}
 REMEMBERED = 64
 
@@ -287,13 +289,17 @@ def chosen_for(request: Request, trials: Trials = one_by_one) -> GridChoice:
     Trying takes about a second in one process, and is done for hard shapes with a mirror axis alone.  What was chosen
     is remembered.
     """
-    key = _key(request)
-    choice = _CHOSEN.get(key)
+    return remembered(_CHOSEN, _key(request), lambda: _tried(request, trials))
+
+
+def remembered(known: dict[Hashable, Choice], key: Hashable, choose: Callable[[], Choice]) -> Choice:
+    """A choice that was made before, or made now; the oldest of :data:`REMEMBERED` goes."""
+    choice = known.get(key)
     if choice is None:
-        choice = _tried(request, trials)
-        while len(_CHOSEN) >= REMEMBERED:
-            _CHOSEN.pop(next(iter(_CHOSEN)), None)
-        _CHOSEN[key] = choice
+        choice = choose()
+        while len(known) >= REMEMBERED:
+            known.pop(next(iter(known)), None)
+        known[key] = choice
     return choice
 
 

@@ -15,7 +15,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.sentences import sentence
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape, start_shape
 from kirigami_studio.outlines.turning import sides_needed
-from kirigami_studio.pipeline.auto_grid import REMEMBERED, TRIAL, Trials, one_by_one, predicted_for
+from kirigami_studio.pipeline.auto_grid import TRIAL, Trials, one_by_one, predicted_for, remembered
 from kirigami_studio.pipeline.rank import EVENNESS
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import TrialTask
@@ -55,13 +55,7 @@ def chosen_start(request: Request, trials: Trials = one_by_one) -> StartChoice:
     sheet = (request.width_mm, request.least_feature_mm, request.least_gap_mm, request.fit_options.free_rim)
     grid = None if request.grid_chosen else request.grid
     key = request.target, request.phi, request.symmetry, grid, request.start.weight, *sheet
-    choice = _CHOSEN.get(key)
-    if choice is None:
-        choice = _tried(request, trials)
-        while len(_CHOSEN) >= REMEMBERED:
-            _CHOSEN.pop(next(iter(_CHOSEN)), None)
-        _CHOSEN[key] = choice
-    return choice
+    return remembered(_CHOSEN, key, lambda: _tried(request, trials))
 
 
 def _tried(request: Request, trials: Trials) -> StartChoice:

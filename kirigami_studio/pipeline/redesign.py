@@ -27,7 +27,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
-from kirigami_studio.polish.covering import fit_cover
+from kirigami_studio.polish.covering import Cover, fit_cover
 from kirigami_studio.polish.even_panels import even_weight
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.panel_size import least_in_cells
@@ -152,22 +152,7 @@ def trimmed(
     KirigamiError
         The candidate's outline crosses itself.
     """
-    score = candidate.score
-    with one_blas_thread():
-        sheet = candidate.sheet
-        cover = fit_cover(
-            sheet,
-            target,
-            score.phi,
-            COVER_STEPS,
-            score.transform,
-            keep,
-            cancel,
-            locked,
-            free_rim=not sheet.has_even_rim,
-            symmetry=None if locked is not None and locked.any() else kept_symmetry(sheet),
-            least_panel=least_panel,
-        )
+    cover = _cover(candidate, target, keep, cancel, locked, least_panel=least_panel)
     return Trimmed(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
 
 
@@ -199,14 +184,35 @@ def covered(
     KirigamiError
         The candidate's outline crosses itself.
     """
+    cover = _cover(candidate, target, keep, cancel, locked, least_panel=least_panel, even=even, notched=True)
     with one_blas_thread():
-        sheet = candidate.sheet
-        cover = fit_cover(
+        deployment = deploy(cover.trim.sheet)
+        score = evaluate(deployment, target, candidate.score.phi)
+        second = matched_again(deployment, candidate.second)
+    made = replace(candidate, sheet=cover.trim.sheet, score=score, polished=True, sampled_sheet=None, second=second)
+    return Trimmed(replace(made, trim=cover.trim, origin=Origin.COVERED), cover.fit.evaluations + 2)
+
+
+def _cover(
+    candidate: Candidate,
+    target: Outline,
+    keep: float,
+    cancel: Callable[[], bool],
+    locked: BoolArray | None,
+    *,
+    least_panel: float,
+    even: float = 0.0,
+    notched: bool = False,
+) -> Cover:
+    """Fit a candidate's sheet so that it covers the target, within its own rim and symmetry."""
+    sheet, score = candidate.sheet, candidate.score
+    with one_blas_thread():
+        return fit_cover(
             sheet,
             target,
-            candidate.score.phi,
+            score.phi,
             COVER_STEPS,
-            candidate.score.transform,
+            score.transform,
             keep,
             cancel,
             locked,
@@ -214,13 +220,8 @@ def covered(
             symmetry=None if locked is not None and locked.any() else kept_symmetry(sheet),
             even=even,
             least_panel=least_panel,
-            notched=True,
+            notched=notched,
         )
-        deployment = deploy(cover.trim.sheet)
-        score = evaluate(deployment, target, candidate.score.phi)
-        second = matched_again(deployment, candidate.second)
-    made = replace(candidate, sheet=cover.trim.sheet, score=score, polished=True, sampled_sheet=None, second=second)
-    return Trimmed(replace(made, trim=cover.trim, origin=Origin.COVERED), cover.fit.evaluations + 2)
 
 
 def refitted(

@@ -72,7 +72,7 @@ def import_exporters() -> None:
 
 @cache
 def import_verdicts() -> None:
-    """What cards say of designs, as soon as a project is open."""
+    """Verdicts on cards, which are there as soon as a project is open."""
     with quietly():
         from kirigami_studio.studio import verdict as _verdict  # noqa: F401
 

@@ -438,6 +438,8 @@ def looking(
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
     yield
+    if (crowded := _crowded(plan)) is not None:
+        return CloseLook(crowded)
     try:
         report, _ = checked_plan(candidate, plan, motion, settings)
     except KirigamiError as error:
@@ -450,6 +452,20 @@ def looking(
     new = (one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems)
     refusal = next((problem for problem in new if problem.code not in BEARABLE), None)
     return CloseLook(refusal, None if isinstance(as_cut, str) else as_cut)
+
+
+def _crowded(plan: CutPlan) -> Note | None:
+    """The note on a trimmed sheet whose file would be refused: panels cannot make room there."""
+    crowded = next((note for note in plan.notes if note.code == "plan.no_room_made_in_trimmed"), None)
+    if crowded is None:
+        return None
+    from kirigami_studio.export.profile import find_profile
+    from kirigami_studio.export.strokes import sheet_strokes
+    from kirigami_studio.export.verification import file_voids, void_findings
+
+    profile = find_profile("any")
+    found = void_findings(file_voids(sheet_strokes(plan, profile), plan, profile), plan)
+    return None if all(one.ok for one in found) else crowded
 
 
 def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target: Outline) -> CloseLook:

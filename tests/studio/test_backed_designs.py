@@ -17,8 +17,6 @@ import kirigami_studio as ks
 from kirigami_studio.__main__ import main
 from kirigami_studio.api.design import Design
 from kirigami_studio.assembly.checks import body_of, placed_bodies
-from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export.dxf_reading import read_with_ezdxf
 from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.fabricate.cut_panels import cut_panels
@@ -30,10 +28,8 @@ from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
-from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.as_cut import Source, estimate
 from kirigami_studio.studio.checking import checked_together
@@ -51,6 +47,7 @@ from kirigami_studio.studio.making import (
     timing,
 )
 from kirigami_studio.studio.verdict import Level, look_at
+from tests.square_documents import square_document
 
 LAYERS = {f"layer-{layer}{kind}" for layer in (1, 2) for kind in (".dxf", ".svg", ".lbrn2")}
 
@@ -58,11 +55,7 @@ LAYERS = {f"layer-{layer}{kind}" for layer in (1, 2) for kind in (".dxf", ".svg"
 @pytest.fixture(scope="module")
 def square() -> Document:
     """A square of 3 x 3 voids with tiles of plywood on cotton, 160 mm wide."""
-    sheet = Sheet(RatioField(10 ** (0.1 * (-1.0) ** np.add.outer(range(3), range(3)))))
-    target = silhouettes.load("square")
-    candidate = Candidate(sheet, evaluate(deploy(sheet), target), 0, 0)
-    settings = new_settings({"material": "plywood-co2", "construction": "backed", "width_mm": 160.0})
-    return Document(target, DesignSettings(), (candidate,), 0, fabrication=settings)
+    return square_document({"material": "plywood-co2", "construction": "backed", "width_mm": 160.0})
 
 
 @pytest.fixture(scope="module")

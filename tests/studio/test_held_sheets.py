@@ -10,28 +10,18 @@ import numpy as np
 import pytest
 
 from kirigami_studio.__main__ import main
-from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.fabricate.hold import HoldKind, HoldWhen
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
-from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.outlines import silhouettes
 from kirigami_studio.project.document import Document
-from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import new_settings
 from kirigami_studio.studio.making import CutRequest, Output, exporting, planned
+from tests.square_documents import square_document
 
 
 @pytest.fixture(scope="module")
 def square() -> Document:
     """A square of 3 x 3 voids of film, 120 mm wide, named in a corner."""
-    sheet = Sheet(RatioField(10 ** (0.1 * (-1.0) ** np.add.outer(range(3), range(3)))))
-    target = silhouettes.load("square")
-    candidate = Candidate(sheet, evaluate(deploy(sheet), target), 0, 0)
-    settings = new_settings({"material": "film-uv", "construction": "one-sheet", "width_mm": 120.0})
-    return Document(target, DesignSettings(), (candidate,), 0, fabrication=settings)
+    return square_document({"material": "film-uv", "construction": "one-sheet", "width_mm": 120.0})
 
 
 @pytest.mark.parametrize("kind", [kind for kind in HoldKind if kind is not HoldKind.NONE])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +15,10 @@ from kirigami_studio.evaluate.trimming import trim
 from kirigami_studio.export.dxf_check import check_file
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.lightburn import read_lightburn
+from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.registry import export
-from kirigami_studio.export.verification import verify_export
+from kirigami_studio.export.strokes import strokes_of
+from kirigami_studio.export.verification import file_voids, verify_export, void_findings
 from kirigami_studio.fabricate.cut_path import Layer
 from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
@@ -63,6 +66,18 @@ def test_that_a_file_that_lost_its_hole_is_found_out(sheet: Deployment, plan: Cu
     path.write_text(text[:begin] + text[text.index("</g>", begin) + len("</g>") :])
     assert "cut_file.holes_differ" in {problem.code for problem in check_file(path).problems}
     assert not verify_export(plan, path, "k40").ok
+
+
+def test_that_more_connectors_than_planned_are_corners_of_holes_or_wrong(plan: CutPlan) -> None:
+    profile = find_profile("any")
+    found = file_voids(strokes_of(plan, profile), plan, profile)
+    assert all(one.ok for one in void_findings(found, plan))
+    corner, middle = plan.boundary.interiors[0].coords[0], plan.boundary.representative_point()
+    for place, right in ((corner, True), ((middle.x, middle.y), False)):
+        more = replace(found, connectors=(*found.connectors, replace(found.connectors[0], centre=place)))
+        assert all(one.ok for one in void_findings(more, plan)) is right
+    fewer = replace(found, connectors=found.connectors[1:])
+    assert not all(one.ok for one in void_findings(fewer, plan))
 
 
 def test_that_holes_have_a_setting_of_their_own_in_a_laser_project(

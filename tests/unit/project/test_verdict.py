@@ -128,6 +128,14 @@ def test_that_a_design_says_why_it_cannot_be_cut(design: Candidate) -> None:
         assert reason is not None and reason.code == code and reason.text
 
 
+def test_that_a_trimmed_design_whose_file_would_be_refused_cannot_be_cut() -> None:
+    """Its connectors beside notches are too near each other, by 9 um of the 5 that a file may miss."""
+    document = load(Path(__file__).parents[2] / "data" / "making" / "gear_crowded.kiri")
+    assert document.candidates[0].trim is not None
+    refusal = look_at(document.candidates[0], document.fabrication, document.target).refusal
+    assert refusal is not None and refusal.code == "plan.no_room_made_in_trimmed"
+
+
 def test_that_thin_film_which_jams_while_it_stays_flat_is_cut_with_care(design: Candidate) -> None:
     found = assess(design, replace(FILM, options=STRAIGHT)).verdict
     assert found.level is Level.CARE and not found.ok
