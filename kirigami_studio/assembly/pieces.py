@@ -117,6 +117,11 @@ class Assembly:
         """Pieces by their ids."""
         return {piece.id: piece for piece in self.pieces}
 
+    @cached_property
+    def _at_angles(self) -> dict[float, FloatArray]:
+        """Poses at all angles that were asked for."""
+        return {}
+
     @property
     def left_out(self) -> int:
         """How many nodes that two panels share have no pin."""
@@ -131,6 +136,8 @@ class Assembly:
             Shift x, shift y (mm, frame of the deployment) and turn (radians, counter-clockwise); a piece is turned
             about its origin, then shifted.
         """
+        if (known := self._at_angles.get(phi)) is not None:
+            return known
         half = 0.5 * (math.pi - check_phi(phi))
         rows, columns = np.array([piece.panel for piece in self.pieces], dtype=np.int64).T
         origins = self.deployment.panels(phi)[rows, columns].mean(axis=1) * self.cell_mm
@@ -139,7 +146,10 @@ class Assembly:
             if piece.pivot is not None:
                 origins[index] += rotate(piece.pivot, turns[index])
                 turns[index] = -turns[index]
-        return np.column_stack([origins, turns])
+        found = np.column_stack([origins, turns])
+        found.setflags(write=False)
+        self._at_angles[phi] = found
+        return found
 
     def placed(self, piece: Piece, points: FloatArray, phi: float) -> FloatArray:
         """Carry points (..., 2) of a piece's frame to their places at ``phi``, mm."""

@@ -37,6 +37,7 @@ from kirigami_studio.export.pdf_pages import (
     draw_line,
     draw_pages,
     draw_ruler,
+    path_of,
     stroke_colour,
     to_page,
 )
@@ -200,7 +201,7 @@ def _one_page(size: Size) -> Tiling:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Shape:
-    """A piece in a picture, mm: its rings, the outer one first, its number and its place."""
+    """A piece in a picture, mm: its rings, the outer one first and coarse, its number and its place."""
 
     layer: int
     rings: tuple[FloatArray, ...]
@@ -241,7 +242,7 @@ class _Drawing:
             _Shape(
                 piece.layer,
                 (
-                    placed[piece.id] - low,
+                    _coarse(placed[piece.id] - low),
                     *(assembly.placed(piece, ring, phi) - low for ring in piece.openings),
                     *(
                         assembly.placed(piece, hole.centre + 0.5 * hole.diameter_mm * CIRCLE, phi) - low
@@ -271,7 +272,7 @@ class _Drawing:
         shapes = [
             _Shape(
                 bed.layer,
-                (place.put(cuts.outline), *(place.put(ring) for ring in cuts.openings),
+                (_coarse(place.put(cuts.outline)), *(place.put(ring) for ring in cuts.openings),
                  *(place.put(hole.centre + 0.5 * hole.diameter_mm * CIRCLE) for hole in cuts.holes)),
                 cuts.piece.id,
                 place.put(np.asarray(cuts.piece.label_at, dtype=np.float64)),
@@ -303,15 +304,12 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
     canvas.setLineWidth(0.35 * LINE_MM * mm if scale < 1.0 else LINE_MM * mm)
     for ring in drawing.target:
         fill = picture.TARGET_FILL if ring is drawing.target[0] else picture.PAPER
-        _fill(canvas, [corner + scale * ring], fill)
+        _fill(canvas, corner + scale * ring, fill)
     for shape in drawing.shapes:
-        rings = [corner + _coarse(scale * ring) for ring in shape.rings]
-        _fill(canvas, rings[:1], FILLS[shape.layer])
-        for ring in rings[1:]:
-            _fill(canvas, [ring], picture.PAPER)
         stroke_colour(canvas, EDGES[shape.layer])
-        for ring in rings:
-            draw_line(canvas, ring, closed=True)
+        for at, ring in enumerate(shape.rings):
+            _ink(canvas, FILLS[shape.layer] if at == 0 else picture.PAPER)
+            canvas.drawPath(path_of(corner + scale * ring, closed=True), stroke=1, fill=1, fillMode=1)
     for ring in drawing.target:
         stroke_colour(canvas, picture.TARGET_EDGE)
         draw_line(canvas, corner + scale * ring, closed=True)
@@ -322,29 +320,22 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         _number(canvas, shape, scale, corner)
     for number, marks in drawing.holds:
         for ring in marks:
-            _fill(canvas, [corner + scale * ring], HOLD)
+            _fill(canvas, corner + scale * ring, HOLD)
         x, y = ((corner + scale * np.concatenate(marks).max(axis=0)) * mm).tolist()
-        canvas.setFillColorRGB(*(channel / 255.0 for channel in HOLD))
+        _ink(canvas, HOLD)
         canvas.setFont("Helvetica-Bold", MOST_POINTS)
         canvas.drawString(x + 0.2 * BESIDE_POINTS, y - BESIDE_POINTS, number)
 
 
 def _coarse(ring: FloatArray) -> FloatArray:
-    """A ring (L, 2), mm on the page, without corners that nobody sees."""
+    """A ring (L, 2), mm, without corners that nobody sees."""
     found: FloatArray = shapely.get_coordinates(shapely.simplify(shapely.LinearRing(ring), UNSEEN_MM))[:-1]
     return found
 
 
-def _fill(canvas: Any, rings: Sequence[FloatArray], colour: Colour) -> None:
-    canvas.setFillColorRGB(*(channel / 255.0 for channel in colour))
-    path = canvas.beginPath()
-    for ring in rings:
-        (x, y), *rest = ring.tolist()
-        path.moveTo(x * mm, y * mm)
-        for x, y in rest:
-            path.lineTo(x * mm, y * mm)
-        path.close()
-    canvas.drawPath(path, stroke=0, fill=1, fillMode=1)
+def _fill(canvas: Any, ring: FloatArray, colour: Colour) -> None:
+    _ink(canvas, colour)
+    canvas.drawPath(path_of(ring, closed=True), stroke=0, fill=1, fillMode=1)
 
 
 def _number(canvas: Any, shape: _Shape, scale: float, corner: FloatArray) -> None:
@@ -355,8 +346,9 @@ def _number(canvas: Any, shape: _Shape, scale: float, corner: FloatArray) -> Non
     canvas.drawCentredString(x * mm, y * mm - 0.35 * points, shape.number)
 
 
-def _ink(canvas: Any) -> None:
-    canvas.setFillColorRGB(*(channel / 255.0 for channel in picture.INK))
+def _ink(canvas: Any, colour: Colour = picture.INK) -> None:
+    """Fill areas and letters with a colour from now on."""
+    canvas.setFillColorRGB(*(channel / 255.0 for channel in colour))
 
 
 def _fitting(drawing: _Drawing, box: Size) -> float:
@@ -457,17 +449,17 @@ def _draw_grips(
     held, pulled = (corner + scale * (one.at - np.array([0.0, BELOW * one.room_mm])) for one in shapes)
     way = (ahead[1] - here[1]) - (ahead[0] - here[0])
     length = float(np.hypot(*way))
-    _fill(canvas, [held + GRIP_MM * CIRCLE], GRIP)
+    _fill(canvas, held + GRIP_MM * CIRCLE, GRIP)
     if length <= 0.0:
         return
     along = way / length
     across = np.array([-along[1], along[0]])
     tip = pulled + ARROW_MM * along
     neck = tip - HEAD_MM * along
-    _fill(canvas, [pulled + GRIP_MM * CIRCLE], GRIP)
-    _fill(canvas, [np.array([tip, neck + 0.6 * HEAD_MM * across, neck - 0.6 * HEAD_MM * across])], GRIP)
+    _fill(canvas, pulled + GRIP_MM * CIRCLE, GRIP)
+    _fill(canvas, np.array([tip, neck + 0.6 * HEAD_MM * across, neck - 0.6 * HEAD_MM * across]), GRIP)
     shaft = 0.25 * GRIP_MM * across
-    _fill(canvas, [np.array([pulled + shaft, neck + shaft, neck - shaft, pulled - shaft])], GRIP)
+    _fill(canvas, np.array([pulled + shaft, neck + shaft, neck - shaft, pulled - shaft]), GRIP)
 
 
 def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
@@ -477,7 +469,7 @@ def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
     canvas.setLineWidth(LINE_MM * mm)
     for layer, words in sheet.legend.items():
         ring = square + np.array([x, y])
-        _fill(canvas, [ring], FILLS[layer])
+        _fill(canvas, ring, FILLS[layer])
         stroke_colour(canvas, EDGES[layer])
         draw_line(canvas, ring, closed=True)
         x = _words(canvas, tr(words), x + 6.0, y)
@@ -486,10 +478,10 @@ def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
         draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
         x = _words(canvas, tr("pin"), x + 5.0, y)
     if sheet.holds:
-        _fill(canvas, [np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE], HOLD)
+        _fill(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, HOLD)
         x = _words(canvas, tr("keeps it so"), x + 5.0, y)
     if sheet.grips is not None:
-        _fill(canvas, [np.array([x + 1.5, y + 1.5]) + GRIP_MM * CIRCLE], GRIP)
+        _fill(canvas, np.array([x + 1.5, y + 1.5]) + GRIP_MM * CIRCLE, GRIP)
         held, pulled = sheet.grips
         x = _words(canvas, tr("hold {held}, pull {pulled}", held=held, pulled=pulled), x + 5.0, y)
     _words(canvas, tr("pictures at 1 : {scale:.1f}", scale=1.0 / scale), x, y)
@@ -629,7 +621,7 @@ def _draw_part(canvas: Any, flat: _Drawing, part: Tile) -> None:
     canvas.clipPath(clip, stroke=0, fill=0)
     here = [shape for shape in flat.shapes if window.intersects(Polygon(shape.rings[0]))]
     for shape in here:
-        _fill(canvas, [_coarse(shape.rings[0]) + shift], FILLS[shape.layer])
+        _fill(canvas, shape.rings[0] + shift, FILLS[shape.layer])
     canvas.restoreState()
     canvas.setLineWidth(LINE_MM * mm)
     for shape in here:
@@ -649,7 +641,7 @@ def _draw_part(canvas: Any, flat: _Drawing, part: Tile) -> None:
 
 def _verify(path: Path, flat: _Drawing, tiling: Tiling, before: Sequence[Size]) -> None:
     """Read the pages back: their sizes, and that those at true size hold every outline once."""
-    pages = read_pages(path)
+    pages = read_pages(path, len(tiling.tiles))
     sizes = [*before, *[tiling.page] * (len(tiling.tiles) + (len(tiling.tiles) > 1))]
     if len(pages) != len(sizes):
         raise ExportError("pdf.other_page_count", pages=len(pages), parts=len(sizes))

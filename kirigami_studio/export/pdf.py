@@ -171,8 +171,8 @@ class Page:
     lines: tuple[PageLine, ...]
 
 
-def read_pages(path: Path) -> list[Page]:
-    """Return all pages in order.
+def read_pages(path: Path, last: int | None = None) -> list[Page]:
+    """Return all pages in order; the lines of all, or of so many at the end.
 
     Raises
     ------
@@ -187,9 +187,10 @@ def read_pages(path: Path) -> list[Page]:
     if len(boxes) != len(streams):
         raise ExportError("pdf.pages_without_drawing", path=path, pages=len(boxes), drawings=len(streams))
     try:
+        first = 0 if last is None else len(boxes) - last
         return [
-            Page(box, tuple(_lines(_TEXT.sub(b"", stream).decode("latin-1"))))
-            for box, stream in zip(boxes, streams, strict=True)
+            Page(box, tuple(_lines(_TEXT.sub(b"", stream).decode("latin-1"))) if number >= first else ())
+            for number, (box, stream) in enumerate(zip(boxes, streams, strict=True))
         ]
     except (ValueError, IndexError) as error:
         raise ExportError("pdf.drawing_not_readable", path=path, reason=str(error)) from error
