@@ -117,11 +117,6 @@ class Assembly:
         """Pieces by their ids."""
         return {piece.id: piece for piece in self.pieces}
 
-    @cached_property
-    def _at_angles(self) -> dict[float, FloatArray]:
-        """Poses at all angles that were asked for."""
-        return {}
-
     @property
     def left_out(self) -> int:
         """How many nodes that two panels share have no pin."""
@@ -150,6 +145,11 @@ class Assembly:
         found.setflags(write=False)
         self._at_angles[phi] = found
         return found
+
+    @cached_property
+    def _at_angles(self) -> dict[float, FloatArray]:
+        """Poses at all angles that were asked for."""
+        return {}
 
     def placed(self, piece: Piece, points: FloatArray, phi: float) -> FloatArray:
         """Carry points (..., 2) of a piece's frame to their places at ``phi``, mm."""
