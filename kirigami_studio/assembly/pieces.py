@@ -8,7 +8,7 @@ by +a (Eq. 1), so that those of one layer never turn against each other.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -131,8 +131,6 @@ class Assembly:
             Shift x, shift y (mm, frame of the deployment) and turn (radians, counter-clockwise); a piece is turned
             about its origin, then shifted.
         """
-        if (known := self._at_angles.get(phi)) is not None:
-            return known
         half = 0.5 * (math.pi - check_phi(phi))
         rows, columns = np.array([piece.panel for piece in self.pieces], dtype=np.int64).T
         origins = self.deployment.panels(phi)[rows, columns].mean(axis=1) * self.cell_mm
@@ -141,17 +139,18 @@ class Assembly:
             if piece.pivot is not None:
                 origins[index] += rotate(piece.pivot, turns[index])
                 turns[index] = -turns[index]
-        found = np.column_stack([origins, turns])
-        found.setflags(write=False)
-        self._at_angles[phi] = found
-        return found
+        return np.column_stack([origins, turns])
 
-    @cached_property
-    def _at_angles(self) -> dict[float, FloatArray]:
-        """Poses at all angles that were asked for."""
-        return {}
+    def placing(self, phi: float) -> Callable[[Piece, FloatArray], FloatArray]:
+        """What carries points (..., 2) of a piece's frame to their places at ``phi``, mm."""
+        poses = dict(zip(self.pieces, self.poses(phi).tolist(), strict=True))
+
+        def placed(piece: Piece, points: FloatArray) -> FloatArray:
+            x, y, turn = poses[piece]
+            return np.asarray(rotate(points, turn) + np.array([x, y]))
+
+        return placed
 
     def placed(self, piece: Piece, points: FloatArray, phi: float) -> FloatArray:
         """Carry points (..., 2) of a piece's frame to their places at ``phi``, mm."""
-        x, y, turn = self.poses(phi)[self.pieces.index(piece)]
-        return np.asarray(rotate(points, turn) + np.array([x, y]))
+        return self.placing(phi)(piece, points)

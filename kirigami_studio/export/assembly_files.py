@@ -595,7 +595,8 @@ def _motion_verified(
             continue
         moved = [*motion_findings(pieces, record, known), *hold_findings(pieces, record)]
         findings += [replace(finding, reader=kind.removeprefix(".").upper()) for finding in moved]
-    far = np.concatenate([job.assembly.placed(piece, piece.outline, math.pi) for piece in job.assembly.pieces])
+    place = job.assembly.placing(math.pi)
+    far = np.concatenate([place(piece, piece.outline) for piece in job.assembly.pieces])
     width, height = np.ptp(far, axis=0).tolist()
     return Verification(
         path=goal,

@@ -235,7 +235,8 @@ class _Drawing:
     def of(cls, assembly: Assembly, phi: float, target: ShapeRings = None, holds: Sequence[HoldPlace] = ()) -> _Drawing:
         """The sheet at an angle."""
         pieces = sorted(assembly.pieces, key=lambda piece: -piece.layer)
-        placed = {piece.id: assembly.placed(piece, piece.outline, phi) for piece in pieces}
+        place = assembly.placing(phi)
+        placed = {piece.id: place(piece, piece.outline) for piece in pieces}
         everything = np.concatenate([*placed.values(), *as_rings(target)])
         low, high = everything.min(axis=0), everything.max(axis=0)
         shapes = [
@@ -243,27 +244,24 @@ class _Drawing:
                 piece.layer,
                 (
                     _coarse(placed[piece.id] - low),
-                    *(assembly.placed(piece, ring, phi) - low for ring in piece.openings),
-                    *(
-                        assembly.placed(piece, hole.centre + 0.5 * hole.diameter_mm * CIRCLE, phi) - low
-                        for hole in piece.holes
-                    ),
+                    *(place(piece, ring) - low for ring in piece.openings),
+                    *(place(piece, hole.centre + 0.5 * hole.diameter_mm * CIRCLE) - low for hole in piece.holes),
                 ),
                 piece.id,
-                assembly.placed(piece, np.asarray(piece.label_at, dtype=np.float64), phi) - low,
+                place(piece, np.asarray(piece.label_at, dtype=np.float64)) - low,
                 _room(piece.outline, piece.label_mm),
             )
             for piece in pieces
         ]
-        pins = np.array([_pin_place(assembly, hinge, phi) - low for hinge in assembly.hinges]).reshape(-1, 2)
+        pins = _pin_places(assembly, phi) - low
         width, height = (high - low).tolist()
         signs = []
-        for place in holds:
+        for hold in holds:
             rings: list[FloatArray] = []
-            for name, at in zip(place.parts, place.at, strict=True):
-                points = assembly.placed(assembly.by_id[name], at, phi) - low
-                rings += [point + 0.5 * place.hole_mm * CIRCLE for point in points] if place.hole_mm else [points]
-            signs.append((f"{place.number}", tuple(rings)))
+            for name, at in zip(hold.parts, hold.at, strict=True):
+                points = place(assembly.by_id[name], at) - low
+                rings += [point + 0.5 * hold.hole_mm * CIRCLE for point in points] if hold.hole_mm else [points]
+            signs.append((f"{hold.number}", tuple(rings)))
         return cls(tuple(shapes), pins, tuple(ring - low for ring in as_rings(target)), (width, height), tuple(signs))
 
     @classmethod
@@ -294,9 +292,11 @@ def _room(outline: FloatArray, label_mm: float) -> float:
     return max(label_mm, 0.25 * math.sqrt(abs(Polygon(outline).area)))
 
 
-def _pin_place(assembly: Assembly, hinge: Hinge, phi: float) -> FloatArray:
-    piece = assembly.by_id[hinge.pieces[0]]
-    return assembly.placed(piece, np.asarray(hinge.at[0]), phi)
+def _pin_places(assembly: Assembly, phi: float) -> FloatArray:
+    """Places (H, 2) of all pins at an angle, mm."""
+    place = assembly.placing(phi)
+    places = [place(assembly.by_id[hinge.pieces[0]], np.asarray(hinge.at[0])) for hinge in assembly.hinges]
+    return np.array(places).reshape(-1, 2)
 
 
 def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> None:
@@ -500,7 +500,8 @@ def pins_in_order(assembly: Assembly) -> list[list[Hinge]]:
 
     Pins of one row of pieces and the next belong together, for they are put in side by side.
     """
-    places = {hinge.node: _pin_place(assembly, hinge, math.pi) for hinge in assembly.hinges}
+    nodes = [hinge.node for hinge in assembly.hinges]
+    places = dict(zip(nodes, _pin_places(assembly, math.pi).tolist(), strict=True))
     rows: dict[int, list[Hinge]] = {}
     for hinge in assembly.hinges:
         row = min(assembly.by_id[name].panel[0] for name in hinge.pieces)
