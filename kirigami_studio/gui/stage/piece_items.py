@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: Designs whose outlines are kept as paths: those of a gallery and of a comparison.
 KEPT_PATHS = 128
+#: Width of a line of artwork, mm.
+DRAWN_MM = 0.3
 #: Faces in the dark theme, against the light one.
 DIMMED = 0.86
 #: A shadow is drawn so many times, each farther off, and so dark (of 255) each time.
@@ -41,6 +43,18 @@ SAME_ANGLE = 1e-3
 def _paths(assembly: Assembly) -> tuple[QPainterPath, ...]:
     """Outlines with openings and holes in the frames of the pieces, mm."""
     return tuple(piece_path(rings_of(piece)) for piece in assembly.pieces)
+
+
+@lru_cache(maxsize=KEPT_PATHS)
+def _drawn_paths(assembly: Assembly) -> tuple[QPainterPath, ...]:
+    """Lines of artwork in the frames of the pieces, mm."""
+    found = []
+    for piece in assembly.pieces:
+        path = QPainterPath()
+        for line in piece.drawn:
+            path.addPath(line_path(line, closed=False))
+        found.append(path)
+    return tuple(found)
 
 
 def piece_path(rings: Sequence[FloatArray]) -> QPainterPath:
@@ -61,7 +75,9 @@ def paint_pieces(
     painter: QPainter, pieces: PosedPieces, phi: float, transform: ViewTransform, palette: Palette
 ) -> None:
     """Draw all layers and the heads of pins at an angle (radians)."""
-    shown = _shown(pieces, phi, transform)
+    to_pixels = _to_pixels(pieces, phi, transform)
+    shown = [to_pixel.map(path) for to_pixel, path in zip(to_pixels, _paths(pieces.assembly), strict=True)]
+    drawn = _drawn_paths(pieces.assembly)
     fall = min(max(pieces.shadow * transform.scale, SHORTEST), LONGEST)
     per_mm = transform.scale / pieces.mm_per_world
     pen = QPen(colour_of(pieces.look.line, palette), 1.0 if per_mm > 1.0 else 0.5)
@@ -72,6 +88,11 @@ def paint_pieces(
         painter.setBrush(colour_of(pieces.look.layer(place, len(pieces.layers)), palette))
         for number in layer:
             painter.drawPath(shown[number])
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QPen(colour_of(pieces.look.number, palette), max(1.0, DRAWN_MM * per_mm)))
+        for number in layer:
+            if not drawn[number].isEmpty():
+                painter.drawPath(to_pixels[number].map(drawn[number]))
     heads = transform.to_pixels(pieces.heads(phi))
     if len(heads):
         places = [QPointF(x, y) for x, y in heads.tolist()]
@@ -107,14 +128,12 @@ def _paint_holds(
             painter.drawText(QPointF(x + radius, y), f"{hold.number}")
 
 
-def _shown(pieces: PosedPieces, phi: float, transform: ViewTransform) -> list[QPainterPath]:
-    """The outline of every piece in pixels."""
+def _to_pixels(pieces: PosedPieces, phi: float, transform: ViewTransform) -> list[QTransform]:
+    """From the frame of every piece to pixels."""
     factors, shifts = pieces.places(phi)
     scale, (left, top) = transform.scale, transform.origin
-    placed = zip(_paths(pieces.assembly), (scale * factors).tolist(), (scale * shifts).tolist(), strict=True)
-    return [
-        QTransform(a.real, -a.imag, -a.imag, -a.real, left + b.real, top - b.imag).map(path) for path, a, b in placed
-    ]
+    placed = zip((scale * factors).tolist(), (scale * shifts).tolist(), strict=True)
+    return [QTransform(a.real, -a.imag, -a.imag, -a.real, left + b.real, top - b.imag) for a, b in placed]
 
 
 def _paint_shadow(painter: QPainter, paths: list[QPainterPath], fall: float) -> None:
