@@ -39,6 +39,8 @@ WIDEST_GAP = 0.02
 FAINT = 0.3
 #: A white rectangle is paper if it covers this share of the page.
 PAPER = 0.9
+#: How many times nearer to its curves than those of an outline the lines of a picture stay: 3 um of 200 mm.
+FINER = 16.0
 
 
 def read_svg(path: str | Path) -> Outline:
@@ -104,7 +106,7 @@ def painted_lines(content: bytes, size: tuple[float, float]) -> tuple[FloatArray
     if len(view) == 4:  # the page is as large as its view, so that nothing is beside it
         root.set("width", view[2])
         root.set("height", view[3])
-    read = svg_drawing(root, 1.0, budget)
+    read = svg_drawing(root, 1.0, budget, FINER)
     refuse_scribbles([chain for shape in read.drawn for chain in shape.chains])
     if read.page is None or min(read.page) <= 0.0:
         return ()
