@@ -57,7 +57,7 @@ from kirigami_studio.mechanics.connectors import (
     tip_asides,
 )
 from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
-from kirigami_studio.mechanics.gripping import panels_to_pin
+from kirigami_studio.mechanics.gripping import SoftMotions
 from kirigami_studio.mechanics.path_contacts import contacts_on_way
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
@@ -400,9 +400,20 @@ def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tupl
     FabricationError
         No such material.
     """
-    sheet = _unplanned_sheet(deployment, settings, material_for(settings))
-    held, pulled = panels_to_pin(deployment, sheet, settings.width_mm, 2)
+    held, pulled = motions_on_pins(deployment, settings).order(2)
     return held, pulled
+
+
+def motions_on_pins(deployment: Deployment, settings: FabricationSettings) -> SoftMotions:
+    """The softest motions of a pinned sheet, by which grips and drives are chosen.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    sheet = _unplanned_sheet(deployment, settings, material_for(settings))
+    return SoftMotions.of(deployment, sheet, settings.width_mm, 2)
 
 
 def motion_on_pins(phi: float, iou: float | None = None) -> AsCut:
