@@ -65,7 +65,7 @@ def grip_steps(
     end : float, radians
     """
     angles = np.linspace(math.pi, end, steps)
-    order = panels_to_pin(deployment, sheet, width_mm, min(PINS[-1], sheet.network.panel_count))
+    order = SoftMotions.for_grips(deployment, sheet, width_mm).order(min(PINS[-1], sheet.network.panel_count))
     for count in PINS:
         held, moved = tuple(order[:1]), tuple(order[1:count])
         yield
@@ -98,6 +98,11 @@ class SoftMotions:
         network = sheet.network
         panels = tuple(network.number_of(place) for place in range(network.panel_count))
         return cls(panels, _softest(deployment, sheet, width_mm, count))
+
+    @classmethod
+    def for_grips(cls, deployment: Deployment, sheet: SheetNetwork, width_mm: float) -> SoftMotions:
+        """As many as the most pins need that are tried."""
+        return cls.of(deployment, sheet, width_mm, min(PINS[-1], sheet.network.panel_count))
 
     def order(self, count: int, among: Sequence[int] | None = None) -> list[int]:
         """Panels in the order in which pins at their middles take away most of the motions.

@@ -416,6 +416,22 @@ def motions_on_pins(deployment: Deployment, settings: FabricationSettings) -> So
     return SoftMotions.of(deployment, sheet, settings.width_mm, 2)
 
 
+def grips_on_tiles(
+    candidate: Candidate, deployment: Deployment, plan: CutPlan, width_mm: float, tiles: Sequence[int]
+) -> tuple[int, int]:
+    """Panels of a backed sheet to hold and to pull first, among those with tiles: as the search for grips begins.
+
+    Raises
+    ------
+    MechanicsError
+        Panels that do not hang together.
+    """
+    kept, made = None if candidate.trim is None else candidate.trim.kept, plan.cut_from(deployment)
+    motions = SoftMotions.for_grips(made, planned_sheet(made, plan, width_mm, kept), width_mm)
+    held, pulled = motions.order(2, tiles)
+    return held, pulled
+
+
 def motion_on_pins(phi: float, iou: float | None = None) -> AsCut:
     """Tell how a pinned design moves: all the way to ``phi`` (radians), without strain.
 

@@ -24,6 +24,7 @@ from kirigami_studio.foundation.errors import (
     ExportError,
     FabricationError,
     KirigamiError,
+    MechanicsError,
     ProjectError,
     UsageError,
 )
@@ -842,7 +843,8 @@ def written(
         def judge(verifications: Sequence[Verification]) -> Verdict:
             return judged(request, made, as_cut, verifications)
 
-        folder, layers = _layers_written(made.layers, output, judge, made.report.problems)
+        job = replace(made.layers, grips=_grips_on_tiles(request, made))
+        folder, layers = _layers_written(job, output, judge, made.report.problems)
         read = layers.verifications
         return ExportedFiles(folder, made, read, verdict=judge(read), files=layers.files)
     from kirigami_studio.export.export_set import export_all, placed
@@ -876,6 +878,24 @@ def written(
     if output.record:
         files = (*files, write_sidecar(job, sidecar_path(path), files, verdict.to_json()))
     return ExportedFiles(place, made, verified, motion=motion, verdict=verdict, files=files)
+
+
+def _grips_on_tiles(request: CutRequest, made: Planned) -> tuple[str, str] | None:
+    """Ids of the tiles to hold and to pull; None where too few hang together."""
+    from kirigami_studio.studio.as_cut import grips_on_tiles
+
+    assert made.layers is not None
+    columns = request.deployment.topology.columns + 1
+    tiles = {row * columns + column: one.id for one in made.layers.assembly.pieces for row, column in [one.panel]}
+    if len(tiles) < 2:
+        return None
+    try:
+        held, pulled = grips_on_tiles(
+            request.candidate, request.deployment, made.plan, request.settings.width_mm, list(tiles)
+        )
+    except MechanicsError:
+        return None
+    return tiles[held], tiles[pulled]
 
 
 def exporting(
