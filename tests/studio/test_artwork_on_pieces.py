@@ -21,6 +21,8 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, PictureFit, SheetState
 from kirigami_studio.export.artwork_picture import read_picture
+from kirigami_studio.export.pdf import read_pages
+from kirigami_studio.export.picture import NAME_COLOUR
 from kirigami_studio.export.profile import find_profile
 from kirigami_studio.export.registry import export
 from kirigami_studio.export.svg import write_layout_svg
@@ -209,6 +211,16 @@ def test_that_pictures_show_the_lines(plain: Document, picture: ArtPicture, tmp_
     assert darker.sum() > 1000, "lines are dark on light faces"
     write_layout_svg(with_lines, tmp_path / "with.svg", 160.0)
     assert all(f'id="ARTWORK_{layer}"' in (tmp_path / "with.svg").read_text() for layer in (1, 2))
+
+
+def test_that_the_assembly_sheet_shows_the_lines(plain: Document, picture: ArtPicture, tmp_path: Path) -> None:
+    lengths = []
+    for document in (with_picture(plain, picture, SheetState.FLAT), plain):
+        folder = tmp_path / f"{len(lengths)}"
+        (written,) = exporting(CutRequest.of(document), Output(folder / "layer.dxf"), True, never)
+        page = read_pages(written.path / "assembly.pdf")[0]
+        lengths.append(sum(LineString(line.points).length for line in page.lines if line.colour == NAME_COLOUR))
+    assert lengths[0] > 500.0 and lengths[1] == 0.0
 
 
 def test_that_a_print_of_each_bed_lies_on_its_cut_file(plain: Document, tmp_path: Path) -> None:
