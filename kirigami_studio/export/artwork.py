@@ -40,8 +40,10 @@ class ArtPicture:
     size: tuple[int, int]  #: (width, height), pixels
     #: tuple of (P, 2) float, pixels; lines of an SVG, which pieces get engraved; a closed one repeats its first point
     lines: tuple[FloatArray, ...] = field(default=(), compare=False, repr=False)
+    line_hash: int = field(default=0, init=False, repr=False)  #: of the lines, by which pictures are compared
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "line_hash", hash(tuple(line.tobytes() for line in self.lines)) if self.lines else 0)
         if len(self.content) > LARGEST_PICTURE or min(self.size) < 1:
             megabytes, limit = len(self.content) / 2**20, LARGEST_PICTURE // 2**20
             raise TargetError("artwork.picture_too_large", name=self.name, megabytes=megabytes, limit=limit)

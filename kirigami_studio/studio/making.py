@@ -779,31 +779,36 @@ def printed_parts(request: CutRequest, cancel: Cancel = never) -> tuple[ExportJo
         raise ExportError("artwork.printer")
     if not request.has_layers:
         return export_job(request, planned(request, cancel)), (None,)
-    if not request.is_pinned and settings.board_cut is BoardCut.KISS:
-        raise ExportError("artwork.kiss_cut")
-    from kirigami_studio.assembly.posed_pieces import PieceLook, PosedPieces
     from kirigami_studio.export.artwork_files import PrintedBed
-    from kirigami_studio.export.artwork_pieces import PrintedPieces
     from kirigami_studio.export.assembly_files import bed_facts
     from kirigami_studio.export.cut_bed import LAYERS
     from kirigami_studio.export.profile import find_profile
 
-    if request.is_pinned:
-        made = pieces_of(request)
-        job, posed = made.cutting, made.posed
-        target = None if request.target is None else request.target.rings
-        printed = PrintedPieces(PosedPieces(posed.assembly, posed.design, PieceLook()), target)
-    else:
-        job = planned(request, cancel).layers
-        printed = None if job is None or job.glued is None else _printed_tiles(request, job.glued.sheet, job.assembly)
+    made = pieces_of(request) if request.is_pinned else planned(request, cancel)
+    job = made.cutting if isinstance(made, MadePieces) else made.layers
+    printed = printed_pieces(request, made)
     if job is None or printed is None:
-        raise ExportError("artwork.printer")
+        raise ExportError("artwork.kiss_cut")
     beds = []
     for bed in (one for one in job.beds if one.layer <= LAYERS):
         facts = bed_facts(job, bed, bed.strokes(find_profile(job.profile)))
         places = {cuts.piece.id: place for cuts, place in bed.placed}
         beds.append(PrintedBed(bed.name, printed, places, bed.size_mm, facts, facts["DESIGN"]))
     return export_job(request, None), tuple(beds)
+
+
+def printed_pieces(request: CutRequest, made: Planned | MadePieces) -> PrintedPieces | None:
+    """The pieces of a design whose fronts get artwork; None for a sheet, a 3D printer, and tiles that are kiss-cut."""
+    from kirigami_studio.assembly.posed_pieces import PieceLook, PosedPieces
+    from kirigami_studio.export.artwork_pieces import PrintedPieces
+
+    if isinstance(made, MadePieces):
+        target, posed = None if request.target is None else request.target.rings, made.posed
+        printed = PrintedPieces(PosedPieces(posed.assembly, posed.design, PieceLook()), target)
+        return None if made.cutting is None else printed
+    if made.layers is None or made.layers.glued is None or request.settings.board_cut is BoardCut.KISS:
+        return None
+    return _printed_tiles(request, made.layers.glued.sheet, made.layers.assembly)
 
 
 def written(

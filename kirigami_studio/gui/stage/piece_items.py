@@ -15,6 +15,7 @@ from kirigami_studio.assembly.posed_pieces import GLINT, HEAD_RIM, rings_of, sha
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.fabricate.hold import HeldState
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.gui.stage.artwork_painting import ShownPrint, paint_patches
 from kirigami_studio.gui.widgets.paths import line_path
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
@@ -72,10 +73,16 @@ def colour_of(shade: Shade, palette: Palette) -> QColor:
 
 
 def paint_pieces(
-    painter: QPainter, pieces: PosedPieces, phi: float, transform: ViewTransform, palette: Palette
+    painter: QPainter,
+    pieces: PosedPieces,
+    phi: float,
+    transform: ViewTransform,
+    palette: Palette,
+    shown_print: ShownPrint | None = None,
 ) -> None:
-    """Draw all layers and the heads of pins at an angle (radians)."""
-    to_pixels = _to_pixels(pieces, phi, transform)
+    """Draw all layers, what is printed on them, and the heads of pins at an angle (radians)."""
+    places = [(complex(factor), complex(shift)) for factor, shift in zip(*pieces.places(phi), strict=True)]
+    to_pixels = _to_pixels(places, transform)
     shown = [to_pixel.map(path) for to_pixel, path in zip(to_pixels, _paths(pieces.assembly), strict=True)]
     drawn = _drawn_paths(pieces.assembly)
     fall = min(max(pieces.shadow * transform.scale, SHORTEST), LONGEST)
@@ -88,6 +95,9 @@ def paint_pieces(
         painter.setBrush(colour_of(pieces.look.layer(place, len(pieces.layers)), palette))
         for number in layer:
             painter.drawPath(shown[number])
+        for number in () if shown_print is None else layer:
+            patches = shown_print.patches.get(pieces.assembly.pieces[number].id, ()) if shown_print else ()
+            paint_patches(painter, patches, places[number], to_pixels[number], transform)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(QPen(colour_of(pieces.look.number, palette), max(1.0, DRAWN_MM * per_mm)))
         for number in layer:
@@ -128,11 +138,10 @@ def _paint_holds(
             painter.drawText(QPointF(x + radius, y), f"{hold.number}")
 
 
-def _to_pixels(pieces: PosedPieces, phi: float, transform: ViewTransform) -> list[QTransform]:
-    """From the frame of every piece to pixels."""
-    factors, shifts = pieces.places(phi)
+def _to_pixels(places: Sequence[tuple[complex, complex]], transform: ViewTransform) -> list[QTransform]:
+    """From the frames of pieces, by their factors and shifts into the world, to pixels."""
     scale, (left, top) = transform.scale, transform.origin
-    placed = zip((scale * factors).tolist(), (scale * shifts).tolist(), strict=True)
+    placed = [(scale * factor, scale * shift) for factor, shift in places]
     return [QTransform(a.real, -a.imag, -a.imag, -a.real, left + b.real, top - b.imag) for a, b in placed]
 
 
