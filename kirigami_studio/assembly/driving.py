@@ -227,7 +227,7 @@ def _arms(
     kind: DriveKind,
     ranked: _Ranked,
 ) -> tuple[Arm, ...]:
-    """An arm that leads a piece and, where there is room, one that follows; none where there is no room."""
+    """An arm that leads a piece, and one that follows where there is room; none without room."""
     opening, pin = math.pi - plan.assembly.phi_target, plan.options.pin_mm
     turned = [arm for arm in beside if arm.piece == led and _board_cuts(columns, (arm,), kind, pin) is not None]
     others = list(dict.fromkeys(arm.piece for arm in beside if arm.piece != led))

@@ -1,4 +1,4 @@
-"""``artwork``: print a picture on the sheet of a project, or on its pieces, in register with the cuts."""
+"""``artwork``: print a picture on the sheet, or the pieces, of a project."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ BARE_SHARE = 0.005
 
 
 def artwork(arguments: argparse.Namespace) -> int:
-    """Write the printed sheet, or pieces, of a project's chosen design as SVG, PDF, PNG, and as it opens."""
+    """Write the printed sheet, or pieces, of a project's chosen design, and how it opens."""
     opened = load_all(arguments.project)
     document = opened.document
     request = CutRequest.of(document, overridden(document.fabrication, arguments))

@@ -241,7 +241,7 @@ def printed_image(work: ArtworkJob, page: BitmapFrame) -> Image.Image:
 
 
 def opened_image(work: ArtworkJob) -> Image.Image:
-    """The printed sheet, or all printed pieces, opened to the target angle, over the target's outline, on white."""
+    """The printed sheet, or all pieces, opened over the target's outline, on white."""
     if work.bed is None:
         sheet = work.sheet
         width = float(np.ptp(sheet.corners[..., 0]))

@@ -181,7 +181,7 @@ class Printable(Protocol):
 
 
 def patches_of(artwork: Artwork, sheet: Printable, regions: Sequence[BaseGeometry]) -> tuple[Patch, ...]:
-    """The first picture in the regions of all parts (flat, mm), and over it the second one in every other stripe."""
+    """The first picture in regions (flat, mm), the second one over it in every other stripe."""
     bands = sheet.bands(artwork)
     shown = [(laid.picture, _maps(laid, sheet)) for laid in artwork.laid]
     found = []
@@ -194,7 +194,7 @@ def patches_of(artwork: Artwork, sheet: Printable, regions: Sequence[BaseGeometr
 
 
 def bands_across(points: FloatArray, stripes: int) -> BaseGeometry:
-    """Every other one of upright stripes of one width across points (P, 2), mm, and what lies around them."""
+    """Every other one of upright stripes of one width across points (P, 2), mm."""
     low, high = points.min(axis=0), points.max(axis=0)
     width = float(high[0] - low[0]) / stripes
     beyond = 2 * math.ceil(MOST_BLEED_MM / (2.0 * width))

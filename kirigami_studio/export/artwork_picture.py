@@ -65,7 +65,7 @@ def read_picture(path: str | Path, draw_svg: DrawSvg | None = None) -> ArtPictur
 
 
 def _lines_of(drawing: bytes, size: tuple[int, int]) -> tuple[FloatArray, ...]:
-    """The lines of an SVG in the pixels of its picture; none where there are too many to be engraved."""
+    """The lines of an SVG in the pixels of its picture; none where there are too many."""
     try:
         lines = painted_lines(drawing, size)
     except TargetError:  # it is a picture all the same

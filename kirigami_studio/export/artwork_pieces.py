@@ -1,4 +1,4 @@
-"""Artwork on pieces: each takes what lies on it of a picture that is seen whole on the open or on the flat assembly.
+"""Artwork on pieces, in register where a picture is whole: on the open or flat assembly.
 
 A piece is rigid, so that what it shows comes from its picture by one similarity, as on a printed sheet.  Pixels are
 printed on its front, a little over its edge; the lines of an SVG are engraved there, and end where it ends.  Layer 1
@@ -90,7 +90,7 @@ class PrintedPieces:
         return self.posed.places(self.phi_target)
 
     def box(self, state: SheetState) -> FloatArray:
-        """Lower left and upper right corner (2, 2) of what pictures are laid on: world, or mm of the flat assembly."""
+        """Corners (2, 2) of the box that pictures are laid on: world, or mm of the flat assembly."""
         if state is SheetState.FLAT:
             points = np.concatenate(self.cells)
         else:
@@ -103,7 +103,7 @@ class PrintedPieces:
 
 
 def artwork_lines(printed: PrintedPieces, artwork: Artwork) -> dict[str, tuple[FloatArray, ...]]:
-    """The lines (P, 2), mm, of artwork on the front of each piece, in its frame, by its id; none where it has none."""
+    """Lines (P, 2), mm, of artwork on the fronts of pieces, in their frames, by their ids."""
     found: dict[str, list[FloatArray]] = {}
     bands = printed.bands(artwork)
     for number, laid in enumerate(artwork.laid):
@@ -127,7 +127,7 @@ def with_lines(assembly: Assembly, lines: Mapping[str, tuple[FloatArray, ...]]) 
 
 
 def _seen(printed: PrintedPieces, state: SheetState, bands: BaseGeometry | None, number: int) -> list[BaseGeometry]:
-    """What is seen of each piece where a picture is laid, and is not of the other picture."""
+    """Parts of pieces that are seen where a picture is laid, without the other picture."""
     factors, shifts = printed.places(state)
     pieces = printed.posed.assembly.pieces
     flat = list(printed.areas)
@@ -183,7 +183,7 @@ def bed_patches(
 
 
 def posed_patches(printed: PrintedPieces, artwork: Artwork, phi: float) -> tuple[Patch, ...]:
-    """What the printed pieces show at an angle, in mm, the lowest layer first."""
+    """Patches of the printed pieces at an angle, in mm, the lowest layer first."""
     flat = [_moved(area, 1.0, complex(at)) for area, at in zip(printed.areas, printed.origins, strict=True)]
     patches = patches_of(artwork, printed, flat)
     motion, scale = printed.motion(phi), printed.mm_per_world

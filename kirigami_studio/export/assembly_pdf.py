@@ -200,7 +200,7 @@ def _one_page(size: Size) -> Tiling:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Shape:
-    """A piece in a picture, mm: its rings, the outer one first, its number and its place, and lines of artwork."""
+    """A piece in a picture, mm: rings, the outer one first, number, place, lines of artwork."""
 
     layer: int
     rings: tuple[FloatArray, ...]

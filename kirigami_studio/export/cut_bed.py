@@ -1,4 +1,4 @@
-"""Pieces of an assembly -> strokes of one bed: numbers, then artwork, then holes, then outlines.
+"""Pieces of an assembly -> strokes of one bed: numbers, artwork, then holes, then outlines.
 
 A piece is cut to its finished size: the middle of the beam runs half a kerf outside its outline and inside its holes.
 Round holes stay circles.  In a corner that points into a piece, a beam leaves a fillet of half a kerf.

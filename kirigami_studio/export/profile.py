@@ -63,7 +63,7 @@ class Profile:
 
     @property
     def artwork_colour(self) -> int | None:
-        """AutoCAD colour index of the lines of artwork: orange where colours are layers; None where all is cut."""
+        """AutoCAD colour index of lines of artwork; None where everything in a file is cut."""
         return ORANGE if self.name_colour == WHITE else self.name_colour
 
     def sheet_colour(self, layer: Layer) -> int:

@@ -94,7 +94,7 @@ class SoftMotions:
 
     @classmethod
     def of(cls, deployment: Deployment, sheet: SheetNetwork, width_mm: float, count: int) -> SoftMotions:
-        """As many as a number of pins need: those of the least eigenvalues of the Hessian, at three angles."""
+        """Those of the least eigenvalues of the Hessian, as many as a number of pins need."""
         network = sheet.network
         panels = tuple(network.number_of(place) for place in range(network.panel_count))
         return cls(panels, _softest(deployment, sheet, width_mm, count))
@@ -128,14 +128,14 @@ class SoftMotions:
 
 
 def _pinned(left: FloatArray, place: int) -> FloatArray:
-    """What is left of motions where one panel is pinned."""
+    """Motions that are left where one panel is pinned."""
     basis, _ = np.linalg.qr(left[place].T)
     found: FloatArray = left - (left @ basis) @ basis.T
     return found
 
 
 def panels_to_pin(deployment: Deployment, sheet: SheetNetwork, width_mm: float, count: int) -> list[int]:
-    """Panels in the order in which pins at their middles take away most of the sheet's softest motions."""
+    """Panels in the order in which pins at their middles take away most soft motions."""
     return SoftMotions.of(deployment, sheet, width_mm, count).order(count)
 
 

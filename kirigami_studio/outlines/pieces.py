@@ -181,7 +181,7 @@ def has_seen_holes(piece: Polygon, region: BaseGeometry | None = None, breadth: 
 
 
 def lines_within(lines: Sequence[FloatArray], area: BaseGeometry) -> list[FloatArray]:
-    """Parts of lines (P, 2) that lie in an area, in the order of the lines; a whole line stays as it is."""
+    """Parts of lines (P, 2) in an area, in their order; a line that is all in it stays as it is."""
     if not lines:
         return []
     strings = shapely.linestrings(

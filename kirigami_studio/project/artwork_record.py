@@ -88,7 +88,7 @@ def _lines(record: Record) -> tuple[FloatArray, ...]:
         return ()
     found = tuple(np.array(line, dtype=np.float64) for line in record.list("lines"))
     if any(line.ndim != 1 or len(line) < 4 or len(line) % 2 or not np.isfinite(line).all() for line in found):
-        raise ProjectError("json.not_a_number", place=RECORD, name="lines")
+        raise ProjectError("json.not_a_number", place=f"{RECORD}.lines", value=record.list("lines"))
     return tuple(line.reshape(-1, 2) for line in found)
 
 

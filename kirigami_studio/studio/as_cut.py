@@ -419,7 +419,7 @@ def motions_on_pins(deployment: Deployment, settings: FabricationSettings) -> So
 def grips_on_tiles(
     candidate: Candidate, deployment: Deployment, plan: CutPlan, width_mm: float, tiles: Sequence[int]
 ) -> tuple[int, int]:
-    """Panels of a backed sheet to hold and to pull first, among those with tiles: as the search for grips begins.
+    """Panels with tiles to hold and to pull first, as the search for grips begins.
 
     Raises
     ------

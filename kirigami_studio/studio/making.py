@@ -798,7 +798,7 @@ def printed_parts(request: CutRequest, cancel: Cancel = never) -> tuple[ExportJo
 
 
 def printed_pieces(request: CutRequest, made: Planned | MadePieces) -> PrintedPieces | None:
-    """The pieces of a design whose fronts get artwork; None for a sheet, a 3D printer, and tiles that are kiss-cut."""
+    """The pieces whose fronts get artwork; None for a sheet, a print, and kiss-cut tiles."""
     from kirigami_studio.assembly.posed_pieces import PieceLook, PosedPieces
     from kirigami_studio.export.artwork_pieces import PrintedPieces
 
@@ -952,7 +952,7 @@ def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
 def exporting_artwork(
     request: CutRequest, folder: Path, many_pages: bool, cancel: Cancel
 ) -> Iterator[ExportedFiles | ManyPages]:
-    """Write the printed parts into a folder: SVG, PDF and PNG in register with the cuts, and a picture of all opened.
+    """Write the printed parts in register with the cuts, and a picture of them opened.
 
     Where the PDF has many pages, nothing is written unless ``many_pages`` are wanted.
     """

@@ -1,4 +1,4 @@
-"""Artwork: read in the worker, painted as a printed flat sheet, and drawn on moving panels and pieces."""
+"""Artwork: read in the worker, painted as a flat sheet, drawn on moving panels and pieces."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def painting_artwork(
 
 
 def painting_on_pieces(artwork: Artwork, printed: PrintedPieces, cancel: Cancel) -> Iterator[ShownPrint]:
-    """Make what pieces show of pictures; those with lines are engraved, and drawn with the pieces."""
+    """Lay pictures on pieces; those with lines are engraved, and drawn with the pieces."""
     importing.import_exporters()
     import shapely
 

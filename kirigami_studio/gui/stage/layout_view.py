@@ -263,7 +263,7 @@ class LayoutView(Canvas):
         return sheet.motion.pose(self._made[1], self.phi)
 
     def show_artwork(self, shown: ShownArtwork | ShownPrint | None) -> None:
-        """Show the printed sheet of a design on its panels, or on its pieces; None where nothing is printed."""
+        """Show the print of a design on its panels or pieces; None where nothing is printed."""
         self.artwork = shown
         self.update()
 
@@ -457,7 +457,7 @@ class LayoutView(Canvas):
         return None if painter.paintEngine().type() is QPaintEngine.Type.SVG else shown
 
     def _print_on(self, painter: QPainter, pieces: PosedPieces) -> ShownPrint | None:
-        """What is printed on pieces, unless it belongs to others, or cannot be drawn as lines."""
+        """The print on pieces, unless it belongs to others, or cannot be drawn as lines."""
         shown = self.artwork
         if not isinstance(shown, ShownPrint) or shown.deployment is not pieces.assembly.deployment:
             return None
