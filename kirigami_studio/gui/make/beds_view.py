@@ -77,6 +77,7 @@ class BedsView(Canvas):
                 rings = [transform.to_pixels(at.put(ring) + place) for ring in rings_of(piece)]
                 painter.drawPath(piece_path(rings))
                 painter.setPen(colour_of(look.number, self.palette_))
+                painter.setBrush(Qt.BrushStyle.NoBrush)
                 for line in piece.drawn:
                     painter.drawPath(line_path(transform.to_pixels(at.put(line) + place), closed=False))
                 if transform.scale > NUMBERED:
