@@ -20,6 +20,8 @@ import svgelements
 from shapely.geometry import Polygon
 
 Ring = tuple[np.ndarray, bool]  #: points, and whether they are those of a circle
+#: Layers whose lines are engraved.
+ENGRAVED = ("NAME", "ARTWORK")
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ def circle(centre: np.ndarray, radius: float) -> np.ndarray:
 def dxf_rings(path: Path) -> list[Ring]:
     rings: list[Ring] = []
     for entity in ezdxf.readfile(path).modelspace():
-        if entity.dxf.layer == "NAME":
+        if entity.dxf.layer in ENGRAVED:
             continue
         if entity.dxftype() == "CIRCLE":
             rings.append((circle(np.array([entity.dxf.center.x, entity.dxf.center.y]), entity.dxf.radius), True))
@@ -67,7 +69,7 @@ def svg_rings(path: Path) -> list[Ring]:
     rings: list[Ring] = []
     drawing = svgelements.SVG.parse(path, reify=False)
     height = float(drawing.viewbox.height)
-    for group in drawing.select(lambda element: isinstance(element, svgelements.Group) and element.id != "NAME"):
+    for group in drawing.select(lambda element: isinstance(element, svgelements.Group) and element.id not in ENGRAVED):
         for shape in group:
             if not isinstance(shape, svgelements.Path):
                 continue
@@ -89,7 +91,7 @@ def project_rings(path: Path) -> list[Ring]:
     for shape in root.findall("Shape"):
         place = np.array([float(word) for word in shape.findtext("XForm").split()])
         assert place[:4].tolist() == [1.0, 0.0, 0.0, 1.0]
-        if names[shape.get("CutIndex")] == "NAME":
+        if names[shape.get("CutIndex")] in ENGRAVED:
             continue
         if shape.get("Type") == "Ellipse":
             rings.append((circle(place[4:], float(shape.get("Rx"))), True))
@@ -104,12 +106,41 @@ def project_rings(path: Path) -> list[Ring]:
 READERS = {".dxf": dxf_rings, ".svg": svg_rings, ".lbrn2": project_rings}
 
 
+@dataclass(frozen=True)
+class Recognised:
+    """Pieces of one kind of file, in their own frames.
+
+    Attributes
+    ----------
+    found : dict
+        Finished area of each piece without its round holes, and their middles.
+    beams : dict
+        File of each piece, its outline there, and the turn and shift from there to its frame.
+    outline_mm, holes_mm : float
+        As in :class:`Together`.
+    """
+
+    found: dict[str, tuple[Polygon, np.ndarray]]
+    beams: dict[str, tuple[Path, Polygon, np.ndarray, np.ndarray]]
+    outline_mm: float
+    holes_mm: float
+
+
 def put_together(folder: Path, kind: str, kerf_mm: float) -> Together:
     """Read the files of a kind, recognise every piece once, and move them as ``pieces.json`` says."""
+    record = json.loads((folder / "pieces.json").read_text())
+    layers = {piece["id"]: piece["layer"] for piece in record["pieces"]}
+    read = recognise(folder, kind, kerf_mm)
+    return Together(len(read.found), read.outline_mm, read.holes_mm, *moved(record, read.found, layers))
+
+
+def recognise(folder: Path, kind: str, kerf_mm: float) -> Recognised:
+    """Read the files of a kind, and recognise every piece once."""
     record = json.loads((folder / "pieces.json").read_text())
     wanted = {piece["id"]: piece for piece in record["pieces"]}
     whole = {name: filleted(Polygon(piece["outline"]), kerf_mm) for name, piece in wanted.items()}
     found: dict[str, tuple[Polygon, np.ndarray]] = {}
+    beams: dict[str, tuple[Path, Polygon, np.ndarray, np.ndarray]] = {}
     outline_mm = holes_mm = 0.0
     for path in sorted(folder.glob(f"layer-*{kind}")):
         layer = int(re.match(r"layer-(\d+)", path.name)[1])
@@ -135,8 +166,50 @@ def put_together(folder: Path, kind: str, kerf_mm: float) -> Together:
             sizes = [abs(radii[at] + 0.5 * kerf_mm - radius[0]) for at in mine]
             holes_mm = max(holes_mm, miss, *sizes, 0.0)
             found[name] = (area, here @ turn.T + shift)
+            beams[name] = (path, beam, turn, shift)
     assert set(found) == set(wanted), "a piece is missing"
-    return Together(len(found), outline_mm, holes_mm, *moved(record, found, {n: p["layer"] for n, p in wanted.items()}))
+    return Recognised(found, beams, outline_mm, holes_mm)
+
+
+def artwork_of(path: Path) -> list[np.ndarray]:
+    """Lines (P, 2), mm, on the layer of artwork of a cut file; closed ones repeat their first point."""
+    lines: list[np.ndarray] = []
+    if path.suffix == ".dxf":
+        for entity in ezdxf.readfile(path).modelspace().query('*[layer=="ARTWORK"]'):
+            points = np.array(entity.get_points("xy"))
+            lines.append(np.vstack([points, points[:1]]) if entity.closed else points)
+    elif path.suffix == ".svg":
+        drawing = svgelements.SVG.parse(path, reify=False)
+        height = float(drawing.viewbox.height)
+        for group in drawing.select(lambda one: isinstance(one, svgelements.Group) and one.id == "ARTWORK"):
+            for shape in (one for one in group if isinstance(one, svgelements.Path)):
+                ends = [part.end for part in shape]
+                lines.append(np.array([[end.x, height - end.y] for end in ends], dtype=float))
+    else:
+        root = ElementTree.parse(path).getroot()
+        names = {s.find("index").get("Value"): s.find("name").get("Value") for s in root.findall("CutSetting")}
+        for shape in root.findall("Shape"):
+            if names[shape.get("CutIndex")] == "ARTWORK":
+                place = np.array([float(word) for word in shape.findtext("XForm").split()])[4:]
+                corners = np.array(re.findall(r"V(\S+) ([-\d.]+)", shape.findtext("VertList")), dtype=float)
+                ways = np.array(re.findall(r"L(\d+) (\d+)", shape.findtext("PrimList")), dtype=int)
+                lines.append(corners[[*ways[:, 0], ways[-1, 1]]] + place)
+    return lines
+
+
+def posed_artwork(folder: Path, read: Recognised, step: int) -> list[np.ndarray]:
+    """Lines of artwork of all pieces as they lie at a step of the motion, mm."""
+    record = json.loads((folder / "pieces.json").read_text())
+    lines = {path: artwork_of(path) for path in {beam[0] for beam in read.beams.values()}}
+    posed = []
+    for name, (path, beam, turn, shift) in read.beams.items():
+        x, y, angle = record["motion"][step]["poses"][name]
+        turned = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        for line in lines[path]:
+            if beam.contains(shapely.Point(line[:2].mean(axis=0))):
+                posed.append((line @ turn.T + shift) @ turned.T + (x, y))
+    assert len(posed) == sum(map(len, lines.values())), "a line lies on no piece, or on two"
+    return posed
 
 
 def filleted(area: Polygon, kerf_mm: float) -> Polygon:

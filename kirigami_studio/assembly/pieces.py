@@ -57,6 +57,8 @@ class Piece:
         Largest height of the number there.
     marks : tuple of (K, 2) float, mm
         Open lines to engrave, where tabs are stuck on.
+    drawn : tuple of (K, 2) float, mm
+        Lines of artwork on its front; a closed one repeats its first point.
     pivot : (2,) float or None, mm
         Of an arm: its origin in the frame of its panel's piece, about which it turns as the other layer does.
     """
@@ -70,6 +72,7 @@ class Piece:
     label_at: FloatArray | tuple[float, float] = (0.0, 0.0)
     label_mm: float = 3.0
     marks: tuple[FloatArray, ...] = ()
+    drawn: tuple[FloatArray, ...] = ()
     pivot: FloatArray | None = None
 
 

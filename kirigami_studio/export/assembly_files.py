@@ -39,7 +39,15 @@ from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.pieces_read import FoundPiece, KnownOutlines, found_pieces, motion_findings
-from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, Profile, find_profile
+from kirigami_studio.export.profile import (
+    ARTWORK_LAYER,
+    DEFAULT_PROFILE,
+    ENGRAVED_LAYERS,
+    NAME_LAYER,
+    DxfVersion,
+    Profile,
+    find_profile,
+)
 from kirigami_studio.export.provenance import PROGRAM, VERDICT, exactly, origin_facts
 from kirigami_studio.export.strokes import Stroke, Work, cutting_work, extent
 from kirigami_studio.export.svg import strokes_svg, write_svg
@@ -197,7 +205,7 @@ class AssemblyJob:
     def works(self) -> tuple[Work, ...]:
         """Length and time of the cuts of each bed."""
         cuts = [
-            [stroke for stroke in bed.strokes(find_profile(self.profile)) if stroke.layer != NAME_LAYER]
+            [stroke for stroke in bed.strokes(find_profile(self.profile)) if stroke.layer not in ENGRAVED_LAYERS]
             for bed in self.beds
         ]
         return tuple(cutting_work(strokes, self.material, self.machine) for strokes in cuts)
@@ -318,7 +326,7 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
 def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[str, str]:
     """The record in a bed's file of its making."""
     profile, size = find_profile(job.profile), bed.size_mm
-    numbers = sum(stroke.layer == NAME_LAYER for stroke in strokes)
+    numbers, artwork = (sum(stroke.layer == name for stroke in strokes) for name in (NAME_LAYER, ARTWORK_LAYER))
     return {
         PROGRAM: __version__,
         "CONSTRUCTION": job.construction.value,
@@ -340,8 +348,9 @@ def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[
         "PATHS": "edges of the finished parts: apply the kerf offset of the machine"
         if profile.slots
         else "beam centre lines, kerf already allowed for: apply no kerf offset",
-        "LINES": f"{len(strokes) - numbers}",
+        "LINES": f"{len(strokes) - numbers - artwork}",
         **({"ENGRAVED_LINES": f"{numbers}"} if numbers else {}),
+        **({"ARTWORK_LINES": f"{artwork}"} if artwork else {}),
         **({VERDICT: job.verdict} if job.verdict else {}),
         **origin_facts(job.provenance),
     }

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from io import BytesIO
 from pathlib import Path
@@ -22,7 +22,7 @@ from shapely.geometry import LineString, Polygon
 from kirigami_studio import __version__
 from kirigami_studio.assembly.driving import BOARD, HANDLE, DriveParts
 from kirigami_studio.assembly.holding import HoldPlace
-from kirigami_studio.assembly.pieces import Assembly, Hinge
+from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece
 from kirigami_studio.export import picture
 from kirigami_studio.export.cut_bed import CutBed
 from kirigami_studio.export.drive_files import drive_steps
@@ -201,13 +201,14 @@ def _one_page(size: Size) -> Tiling:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Shape:
-    """A piece in a picture, mm: its rings, the outer one first and coarse, its number and its place."""
+    """A piece in a picture, mm: rings, the outer one first and coarse, number, place, lines of artwork."""
 
     layer: int
     rings: tuple[FloatArray, ...]
     number: str
     at: FloatArray
     room_mm: float
+    lines: tuple[FloatArray, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -250,6 +251,7 @@ class _Drawing:
                 piece.id,
                 place(piece, np.asarray(piece.label_at, dtype=np.float64)) - low,
                 _room(piece.outline, piece.label_mm),
+                _lines(piece, lambda points, piece=piece: place(piece, points) - low),
             )
             for piece in pieces
         ]
@@ -275,6 +277,7 @@ class _Drawing:
                 cuts.piece.id,
                 place.put(np.asarray(cuts.piece.label_at, dtype=np.float64)),
                 _room(cuts.piece.outline, cuts.piece.label_mm),
+                _lines(cuts.piece, place.put),
             )
             for cuts, place in sorted(bed.placed, key=lambda placed: placed[0].piece.id != bed.frame)
         ]  # fmt: skip
@@ -285,6 +288,14 @@ class _Drawing:
 
 _TURN = 2.0 * np.pi * np.arange(PIN_CORNERS) / PIN_CORNERS
 CIRCLE: FloatArray = np.column_stack([np.cos(_TURN), np.sin(_TURN)])
+
+
+def _lines(piece: Piece, put: Callable[[FloatArray], FloatArray]) -> tuple[FloatArray, ...]:
+    """Lines of artwork on a piece, each (P, 2), mm, where it is put."""
+    if not piece.drawn:
+        return ()
+    ends = np.cumsum([len(line) for line in piece.drawn])[:-1]
+    return tuple(np.split(put(np.concatenate(piece.drawn)), ends))
 
 
 def _room(outline: FloatArray, label_mm: float) -> float:
@@ -310,6 +321,10 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         for at, ring in enumerate(shape.rings):
             _ink(canvas, FILLS[shape.layer] if at == 0 else picture.PAPER)
             canvas.drawPath(path_of(corner + scale * ring, closed=True), stroke=1, fill=1, fillMode=1)
+        stroke_colour(canvas, picture.NAME_COLOUR)
+        for line in shape.lines:
+            coarse = shapely.simplify(LineString(scale * line), UNSEEN_MM)
+            draw_line(canvas, corner + shapely.get_coordinates(coarse), closed=False)
     for ring in drawing.target:
         stroke_colour(canvas, picture.TARGET_EDGE)
         draw_line(canvas, corner + scale * ring, closed=True)

@@ -1,4 +1,4 @@
-"""Pieces of an assembly -> strokes of one bed: numbers, then holes, then outlines.
+"""Pieces of an assembly -> strokes of one bed: numbers, artwork, then holes, then outlines.
 
 A piece is cut to its finished size: the middle of the beam runs half a kerf outside its outline and inside its holes.
 Round holes stay circles.  In a corner that points into a piece, a beam leaves a fillet of half a kerf.
@@ -7,7 +7,7 @@ Round holes stay circles.  In a corner that points into a piece, a beam leaves a
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -21,7 +21,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.assembly.backed import Board
 from kirigami_studio.assembly.nesting import Bed, LaidShape, nested
 from kirigami_studio.assembly.pieces import Piece, RoundHole
-from kirigami_studio.export.profile import NAME_LAYER, Profile
+from kirigami_studio.export.profile import ARTWORK_LAYER, NAME_LAYER, Profile
 from kirigami_studio.export.strokes import MITRE_LIMIT, Stroke
 from kirigami_studio.fabricate.cut_path import CutPath, Layer, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS
@@ -41,7 +41,7 @@ BEAM_CHORD_MM = 1e-4
 SHARP_MM = 5e-4
 #: Layers of a sheet, and the stem of the file of all parts behind them.
 LAYERS, BOARD = 2, "board"
-#: Distance of numbers from the marks of tabs, mm.
+#: Distance of numbers from the marks of tabs, and from lines of artwork where there is room, mm.
 CLEAR_OF_MARK_MM = 0.5
 #: Designs whose beds are kept, with the order of their cuts.
 MOST_KEPT = 16
@@ -99,7 +99,17 @@ class PieceCuts:
             area = area.difference(shapely.union_all([Polygon(mark).buffer(CLEAR_OF_MARK_MM) for mark in piece.marks]))
         parts = [part for part in shapely.get_parts(area) if isinstance(part, Polygon)]
         free = max(parts, key=lambda part: part.area, default=Polygon())
-        return cls(piece, outline, holes, openings, (*written_in(free, piece.id), *lines))
+        number = written_in(_beside(free, piece.drawn), piece.id) or written_in(free, piece.id)
+        return cls(piece, outline, holes, openings, (*number, *lines))
+
+
+def _beside(free: Polygon, drawn: Sequence[FloatArray]) -> Polygon:
+    """The largest part of an area that lines leave free."""
+    if not drawn:
+        return free
+    lines = shapely.union_all(shapely.buffer([LineString(line) for line in drawn], CLEAR_OF_MARK_MM))
+    parts = [part for part in shapely.get_parts(free.difference(lines)) if isinstance(part, Polygon)]
+    return max(parts, key=lambda part: part.area, default=Polygon())
 
 
 def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> list[FloatArray]:
@@ -211,7 +221,14 @@ class CutBed:
         """Everything that a file of this profile draws, in the order of cutting."""
         colour = profile.name_colour
         numbers = () if colour is None else (Stroke(line, False, NAME_LAYER, colour) for line in self._numbers)
-        return (*numbers, *(_stroke(path, profile) for path in self._paths))
+        return (*numbers, *self._artwork(profile), *(_stroke(path, profile) for path in self._paths))
+
+    def _artwork(self, profile: Profile) -> Iterator[Stroke]:
+        """Lines of artwork, piece after piece in the order of their numbers."""
+        colour = profile.artwork_colour
+        for line in () if colour is None else self._drawn:
+            closed = len(line) > 3 and bool(np.all(line[0] == line[-1]))
+            yield Stroke(line[:-1] if closed else line, closed, ARTWORK_LAYER, colour or 0)
 
     @cached_property
     def _paths(self) -> tuple[CutPath, ...]:
@@ -233,12 +250,25 @@ class CutBed:
     @cached_property
     def _numbers(self) -> tuple[FloatArray, ...]:
         """The numbers, each after the nearest."""
-        found = [[_rounded(place.put(line)) for line in cuts.number] for cuts, place in self.placed if cuts.number]
-        if not found:
-            return ()
-        ends = [np.array([lines[0][0], lines[-1][-1]]) @ (1.0, 1j) for lines in found]
-        tour = shortest_tour([Ways(end[:1], end[1:], turnable=False) for end in ends], 0j)
-        return tuple(line for at in tour.order for line in found[at])
+        return _nearest_first(
+            [[_rounded(place.put(line)) for line in cuts.number] for cuts, place in self.placed if cuts.number]
+        )
+
+    @cached_property
+    def _drawn(self) -> tuple[FloatArray, ...]:
+        """The lines of artwork, each after the nearest."""
+        placed = (np.round(place.put(line), DECIMALS) + 0.0 for cuts, place in self.placed for line in cuts.piece.drawn)
+        lines = (line[np.append(True, np.any(line[1:] != line[:-1], axis=1))] for line in placed)
+        return _nearest_first([[line] for line in lines if len(line) > 1])
+
+
+def _nearest_first(found: Sequence[Sequence[FloatArray]]) -> tuple[FloatArray, ...]:
+    """Groups of lines (P, 2), mm, each group after the nearest."""
+    if not found:
+        return ()
+    ends = [np.array([lines[0][0], lines[-1][-1]]) @ (1.0, 1j) for lines in found]
+    tour = shortest_tour([Ways(end[:1], end[1:], turnable=False) for end in ends], 0j)
+    return tuple(line for at in tour.order for line in found[at])
 
 
 def _stroke(path: CutPath, profile: Profile) -> Stroke:

@@ -22,7 +22,7 @@ from kirigami_studio.assembly.nesting import LaidShape
 from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import RoundHole
 from kirigami_studio.export.cut_bed import CutBed, PieceCuts, beam_chords, closed_by, farthest
-from kirigami_studio.export.profile import NAME_LAYER
+from kirigami_studio.export.profile import ENGRAVED_LAYERS, NAME_LAYER
 from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.export.verification import Finding
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
@@ -109,7 +109,7 @@ def found_pieces(
     pieces : list of FoundPiece
         In the order of the bed; none where pieces are missing.
     """
-    cuts = [stroke for stroke in strokes if stroke.layer != NAME_LAYER]
+    cuts = [stroke for stroke in strokes if stroke.layer not in ENGRAVED_LAYERS]
     if not all(stroke.closed and len(stroke.points) > 1 for stroke in cuts):
         return [Finding.judged(False, "verify.pieces_open")], []
     rings = np.array([Polygon(stroke.travelled()) for stroke in cuts], dtype=object)

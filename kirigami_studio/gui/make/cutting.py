@@ -81,6 +81,7 @@ class CutPlanner(QObject):
         session.display.settled.connect(self.plan_soon)
         session.fabrication_changed.connect(self.plan_soon)
         session.document_changed.connect(self._take_name)
+        session.document_changed.connect(self._take_artwork)
 
     @property
     def request(self) -> CutRequest | None:
@@ -104,6 +105,15 @@ class CutPlanner(QObject):
             return
         now = self.request
         if now is not None and now.candidate is before.candidate and now.name != before.name:
+            self.plan_soon()
+
+    def _take_artwork(self, document: Document) -> None:
+        """Plan pieces again that get other lines engraved."""
+        before = self._wanted
+        if before is None or not before.has_layers:
+            return
+        now = self.request
+        if now is not None and now.candidate is before.candidate and now.artwork != before.artwork:
             self.plan_soon()
 
     def close(self) -> None:
