@@ -43,7 +43,7 @@ from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for, pin_gap_mm
 from kirigami_studio.settings.layers import hinge_layer
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cutting import least_feature_mm, room_mm
+from kirigami_studio.studio.cutting import least_feature_mm, room_mm, span_mm
 
 if TYPE_CHECKING:
     from kirigami_studio.studio.as_cut import AsCut
@@ -167,6 +167,7 @@ def request_for(
         width_mm=cut.width_mm,
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
         room_mm=sizes_of(cut)[1],
+        span_mm=_span_of(cut),
         least_gap_mm=gap_mm,
     )
 
@@ -472,6 +473,7 @@ def refitting(
         least_feature_mm=least_mm,
         room_mm=room_mm,
         least_gap_mm=gap_of(settings),
+        span_mm=_span_of(settings),
     )
     untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
     yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
@@ -503,12 +505,13 @@ def fitting_again(
 
 def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
     """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
-    from kirigami_studio.pipeline.redesign import trimmed
+    from kirigami_studio.pipeline.redesign import Room, trimmed
     from kirigami_studio.polish.panel_size import least_in_cells
 
     least_mm, _ = sizes_of(settings)
     least = least_in_cells(least_mm, settings.width_mm, candidate.score.evenness.width)
-    found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least)
+    room = Room(settings.width_mm, _span_of(settings))
+    found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least, room=room)
     if cancel():
         raise Cancelled("trim.stopped")
     yield decoded(found.candidate)
@@ -523,6 +526,14 @@ def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
         return least_feature_mm(settings), 0.0 if pin_gap_mm(settings) else room_mm(settings)
     except KirigamiError:
         return 0.0, 0.0
+
+
+def _span_of(settings: FabricationSettings) -> float:
+    """Width of a connector and of the cut that sheets leave room for; 0 without, and for an unknown material."""
+    try:
+        return 0.0 if pin_gap_mm(settings) else span_mm(settings)
+    except KirigamiError:
+        return 0.0
 
 
 def gap_of(settings: FabricationSettings) -> float:
