@@ -125,6 +125,8 @@ class StartChosen:
     reason: str
 
 
+#: How often other designs are trimmed, where none that is trimmed can be cut.
+TRIMMED_FURTHER = 2
 #: What a run reports.
 RunReport = Event | ModelFound | GridChosen | StartChosen | Decoded
 #: What fitting designs again reports.
@@ -207,7 +209,7 @@ def run_design(
     Cancelled
         ``cancel`` returned true.
     """
-    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, with_grid
+    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, trimmed_further, with_grid
 
     if request.start.is_auto and request.near is None:
         chosen = start_choice(request)
@@ -227,7 +229,20 @@ def run_design(
             new = distinct(result.candidates, beside)
             result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
         result = yield from ranked_as_cut(result, cut, beside, cancel)
+        for _ in range(TRIMMED_FURTHER):
+            if not wants_other_trims(result):
+                break
+            result = yield from trimmed_further(result, cancel, pool)
+            result = yield from ranked_as_cut(result, cut, beside, cancel)
         yield Finished(result)
+
+
+def wants_other_trims(result: Result) -> bool:
+    """Whether designs are to be trimmed that are not yet, as none of those that are can be cut."""
+    asked = result.request.trims and result.request.budget_seconds is None
+    trimmed = [one for one in result.candidates if one.trim is not None]
+    feasible = any(one.trim is None and one.score.feasible for one in result.candidates)
+    return asked and bool(trimmed) and feasible and all(one in result.refusals for one in trimmed)
 
 
 def why_untrimmed(result: Result) -> Note | None:
