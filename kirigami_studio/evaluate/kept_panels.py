@@ -6,6 +6,7 @@ rigid motion), so that the sides of untouched panels stay exactly where the cuts
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -171,7 +172,9 @@ def polygons(corners: FloatArray, holes: Sequence[FloatArray] = ()) -> GeometryA
     return snapped
 
 
-def with_pockets(kept: KeptPanels, corners: FloatArray, targets: GeometryArray, whole: BaseGeometry) -> KeptPanels:
+def with_pockets(
+    kept: KeptPanels, corners: FloatArray, targets: GeometryArray, whole: BaseGeometry, most: float = math.inf
+) -> KeptPanels:
     """Give back what no cut along one outline can take: places that the kept parts enclose in the compact sheet.
 
     Parameters
@@ -180,10 +183,12 @@ def with_pockets(kept: KeptPanels, corners: FloatArray, targets: GeometryArray, 
         As for :func:`kept_panels`.
     whole : geometry
         The rest of the sheet.
+    most : float, unit cells squared
+        Larger places stay open.
     """
     panels = polygons(corners)
     present = [shape if shape is not None else panel for shape, panel in zip(kept.shapes, panels, strict=True)]
-    pockets = enclosed([*present, whole])
+    pockets = [pocket for pocket in enclosed([*present, whole]) if pocket.area < most]
     if not pockets:
         return kept
     filling = _united(*pockets)

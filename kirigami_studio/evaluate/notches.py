@@ -14,6 +14,7 @@ left out or taken back as long as the trimmed silhouette gains from it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -287,8 +288,9 @@ class _NotchCut:
             hinged[other] |= back
             shapes = self._clear_of_guests(self._draft(voids, hinged).shapes, hinged)
             kept = measured(self._panels, self._common, shapes)
-            if not self._open_inside:
-                kept = with_pockets(kept, self._corners, self._targets, NOTHING)
+            # A crumb that is cut out beside a slit is no hole, and leaves no room for the slit's ends.
+            most = self._keep**2 if self._open_inside else math.inf
+            kept = with_pockets(kept, self._corners, self._targets, NOTHING, most)
             reached = self._reached(self._present(kept.shapes))
             if not np.any(reached[one] & reached[other] & ~hinged[one]):
                 break

@@ -99,7 +99,12 @@ def rescored(candidate: Candidate, sheet: Sheet, target: Outline) -> Candidate:
 
 
 def keep_for_connectors(
-    sheet: Sheet, material: Material, width_mm: float, connector_mm: float | None, kerf_mm: float | None
+    sheet: Sheet,
+    material: Material,
+    width_mm: float,
+    connector_mm: float | None,
+    kerf_mm: float | None,
+    least: float = KEEP,
 ) -> float:
     """How deep material has to stay at the hinges of a trimmed sheet so that its connectors hold.
 
@@ -112,6 +117,8 @@ def keep_for_connectors(
         Width of the flat sheet.
     connector_mm, kerf_mm : float or None
         Widths of connectors and of the cut; None for the material's own.
+    least : float, unit cells
+        That stays in any case.
 
     Returns
     -------
@@ -132,7 +139,7 @@ def keep_for_connectors(
             width_mm=width_mm,
             least_mm=math.ceil(width_mm * needed / LARGEST_KEEP),
         )
-    return max(KEEP, needed)
+    return max(least, needed)
 
 
 def kept_symmetry(sheet: Sheet) -> Symmetry | None:

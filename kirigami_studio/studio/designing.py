@@ -16,6 +16,7 @@ import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate, Family
 from kirigami_studio.evaluate.posed_design import trimmed_parts
+from kirigami_studio.evaluate.trimming import HOLE_KEEP, KEEP
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
@@ -357,7 +358,8 @@ def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: floa
     cut = hinge_layer(cut)
     widths = (cut.width_mm, cut.connector_mm, cut.kerf_mm)
     try:
-        return replace(request, keep=keep_for_connectors(request.uniform, material_for(cut), *widths))
+        least = least_keep(request.target)
+        return replace(request, keep=keep_for_connectors(request.uniform, material_for(cut), *widths, least))
     except FabricationError:
         if request.trims:
             raise
@@ -480,7 +482,7 @@ def refitting(
         target,
         wanted.prefer,
         locked,
-        partial(keep_for, candidate, settings),
+        partial(keep_for, candidate, target, settings),
         cancel,
         regular=wanted.regular,
         free_rim=wanted.rim == "free",
@@ -526,7 +528,7 @@ def trimming(candidate: Candidate, target: Outline, settings: FabricationSetting
     least_mm, _ = sizes_of(settings)
     least = least_in_cells(least_mm, settings.width_mm, candidate.score.evenness.width)
     room = Room(settings.width_mm, _span_of(settings))
-    found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least, room=room)
+    found = trimmed(candidate, target, keep_for(candidate, target, settings), cancel, least_panel=least, room=room)
     if cancel():
         raise Cancelled("trim.stopped")
     yield decoded(found.candidate)
@@ -559,9 +561,15 @@ def gap_of(settings: FabricationSettings) -> float:
         return 0.0
 
 
-def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
+def least_keep(target: Outline) -> float:
+    """Depth (unit cells) of the material that stays at hinges of a trimmed sheet whatever its connectors are."""
+    return HOLE_KEEP if target.holes else KEEP
+
+
+def keep_for(candidate: Candidate, target: Outline, settings: FabricationSettings) -> float:
     """Depth (unit cells) of the material that trimming has to leave at the hinges of a candidate."""
     from kirigami_studio.pipeline.redesign import keep_for_connectors
 
     sheet, cut = candidate.sheet, hinge_layer(settings)
-    return keep_for_connectors(sheet, material_for(cut), cut.width_mm, cut.connector_mm, cut.kerf_mm)
+    widths = cut.width_mm, cut.connector_mm, cut.kerf_mm
+    return keep_for_connectors(sheet, material_for(cut), *widths, least_keep(target))
