@@ -14,6 +14,7 @@ left out or taken back as long as the trimmed silhouette gains from it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,7 @@ from kirigami_studio.evaluate.kept_panels import (
     kept_part,
     largest_part,
     measured,
+    moved_off,
     polygons,
     shared_parts,
     with_pockets,
@@ -248,12 +250,28 @@ class _NotchCut:
         shape, area, shared = None, float(self._area[k]), float(self._inside[k])
         if shared < area - SLIVER * SLIVER:
             shape = kept_part(self._panels[k], self._common[k], self._corners[k], hinged, self._keep)
-        if shape is not None:
-            area, shared = float(shape.area), float(shape.intersection(self._common[k]).area)
-        far = 0.0
-        if self._open_inside and shape is not None:
+        return (shared - STICKING_OUT * (area - shared) if shape is None else self._worth(k, shape)), shape
+
+    def _worth(self, k: int, shape: Polygon) -> float:
+        """What a part of a panel adds to the silhouette's worth."""
+        shared, far = float(shape.intersection(self._common[k]).area), 0.0
+        if self._open_inside:
             far = float(shape.difference(shapely.buffer(self._targets[k], self._keep)).area)
-        return shared - STICKING_OUT * (area - shared) - FAR_OFF * far, shape
+        return shared - STICKING_OUT * (float(shape.area) - shared) - FAR_OFF * far
+
+    def _clear_of_guests(self, shapes: GeometryArray, hinged: BoolArray) -> GeometryArray:
+        """The parts of all panels, with room for the connectors that rest on their sides from beyond."""
+        panels, cleared = all_panels(self._rows, self._columns), shapes.copy()
+        place, there = np.zeros((panels.corners.max() + 1, 2)), np.zeros(panels.corners.max() + 2, dtype=np.bool_)
+        place[panels.corners] = self._corners
+        there[panels.corners[hinged]] = True
+        guests = there[panels.guests]  # the last one stands for none
+        for k in np.flatnonzero(guests.any(axis=1)).tolist():
+            if shapes[k] is not None and not shapes[k].is_empty:
+                beside = place[panels.guests[k][guests[k]]]
+                versions = moved_off(self._panels[k], shapes[k], self._corners[k], hinged[k], beside, self._keep)
+                cleared[k] = max(versions, key=lambda part: self._worth(k, part), default=shapes[k])
+        return cleared
 
     def parts(self, voids: BoolArray) -> KeptPanels:
         """What stays of all panels with these voids.
@@ -268,10 +286,11 @@ class _NotchCut:
             back = reached[one] & reached[other] & there[one[0]] & there[other[0]] & ~hinged[one]
             hinged[one] |= back
             hinged[other] |= back
-            shapes = self._draft(voids, hinged).shapes
+            shapes = self._clear_of_guests(self._draft(voids, hinged).shapes, hinged)
             kept = measured(self._panels, self._common, shapes)
-            if not self._open_inside:
-                kept = with_pockets(kept, self._corners, self._targets, NOTHING)
+            # A crumb that is cut out beside a slit is no hole, and leaves no room for the slit's ends.
+            most = self._keep**2 if self._open_inside else math.inf
+            kept = with_pockets(kept, self._corners, self._targets, NOTHING, most)
             reached = self._reached(self._present(kept.shapes))
             if not np.any(reached[one] & reached[other] & ~hinged[one]):
                 break
