@@ -23,6 +23,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.evaluate.kept_panels import (
+    GRID,
     SLIVER,
     GeometryArray,
     KeptPanels,
@@ -143,6 +144,8 @@ class _NotchCut:
         self._panels = polygons(corners)
         self._common = shared_parts(self._panels, targets)
         self._area, self._inside = shapely.area(self._panels), shapely.area(self._common)
+        # Panels (P,) that have stayed whole so far, and their area.
+        self._middle, self._united = np.ones(len(corners), dtype=np.bool_), NOTHING
         self._known: dict[tuple[int, bytes], tuple[float, BaseGeometry | None]] = {}
 
     def first(self) -> BoolArray:
@@ -189,8 +192,9 @@ class _NotchCut:
             tried.add(more[0])
             other = best.voids.copy()
             other.flat[orbits[more[0]]] = False
-            if self._is_one(other):
-                draft = self._draft(other, _hinges_of(other))
+            # Enclosed places only take from what the parts are worth.
+            if self._is_one(other) and self._parts_worth(other, hinged := _hinges_of(other)) > best.worth + LEAST_GAIN:
+                draft = self._draft(other, hinged)
                 best = draft if draft.worth > best.worth + LEAST_GAIN else best
         return best.voids
 
@@ -204,17 +208,28 @@ class _NotchCut:
         beside = draft.voids & (shapely.distance(slits, shapely.union_all(bars)) < TOUCH)
         return [int(void) for void in np.flatnonzero(beside)]
 
+    def _parts_worth(self, voids: BoolArray, hinged: BoolArray) -> float:
+        """What the parts with these voids and hinges add to the silhouette's worth."""
+        return sum(self._part(k, hinged[k])[0] for k in range(len(hinged))) + float(self._void_gain[voids].sum())
+
     def _draft(self, voids: BoolArray, hinged: BoolArray) -> _NotchDraft:
         """The parts with these voids and hinges before enclosed places are filled."""
         shapes = np.empty(len(self._panels), dtype=object)
         shapes[:] = [self._part(k, hinged[k])[1] for k in range(len(hinged))]
-        worth = sum(self._part(k, hinged[k])[0] for k in range(len(hinged))) + float(self._void_gain[voids].sum())
-        notches = [] if self._open_inside else enclosed(self._present(shapes))
+        worth = self._parts_worth(voids, hinged)
+        notches = [] if self._open_inside else self._enclosed(shapes)
         if notches:
             self._open_ways_out(shapes, hinged, ~voids, notches)
-            notches = [notch for notch in enclosed(self._present(shapes)) if notch.area > WORTH_OPENING]
+            notches = [notch for notch in self._enclosed(shapes) if notch.area > WORTH_OPENING]
         filled = STICKING_OUT * sum(float(notch.area) for notch in notches)
         return _NotchDraft(voids, shapes, notches, worth - filled)
+
+    def _enclosed(self, shapes: GeometryArray) -> list[Polygon]:
+        """Places that the parts of all panels enclose; the many that are whole are united once."""
+        middle = self._middle & np.array([shape is None for shape in shapes])
+        if np.any(middle != self._middle):
+            self._middle, self._united = middle, shapely.union_all(self._panels[middle], grid_size=GRID)
+        return enclosed([self._united, *self._present(shapes)[~self._middle]])
 
     def _orbits(self, images: IntArray | None) -> IntArray:
         """Each void with its images, (m n, G + 1), if the target has the sheet's symmetry; else alone."""
@@ -232,10 +247,18 @@ class _NotchCut:
         changes = self._void_gain.flat[np.unique(orbit)].sum() * (1.0 if after.flat[orbit[0]] else -1.0)
         old, new = _hinges_of(before), _hinges_of(after)
         changes -= sum(self._part(k, old[k])[0] for k in panels.tolist())
-        most = float(changes + self._inside[panels[new[panels].any(axis=1)]].sum())
-        if most <= LEAST_GAIN:  # no panel is worth more than its part on the target, so no part has to be made
+        # No panel is worth more than its part on the target: where that is too little, no part has to be made.
+        most = float(changes + sum(self._most(k, new[k]) for k in panels.tolist()))
+        if most <= LEAST_GAIN:
             return most
         return float(changes + sum(self._part(k, new[k])[0] for k in panels.tolist()))
+
+    def _most(self, k: int, hinged: BoolArray) -> float:
+        """What a panel with these hinges may add at most."""
+        key = k, hinged.tobytes()
+        if key in self._known:
+            return self._known[key][0]
+        return float(self._inside[k]) if hinged.any() else 0.0
 
     def _part(self, k: int, hinged: BoolArray) -> tuple[float, BaseGeometry | None]:
         """What a panel with these hinges adds to the silhouette's worth, and what stays of it."""
