@@ -390,8 +390,8 @@ def estimate(
     return _made(jam, phi, outcome, largest, judged, Source.ESTIMATE)
 
 
-def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tuple[int, int]:
-    """Panels to hold and to pull: where the softest motions of a pinned sheet are largest.
+def grips_on_pins(deployment: Deployment, settings: FabricationSettings, among: Sequence[int]) -> tuple[int, int]:
+    """Panels to hold and to pull: where the softest motions of a pinned sheet are largest, of some panels.
 
     Pins bend nothing and leave one motion, so that one of each is enough.
 
@@ -401,7 +401,9 @@ def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tupl
         No such material.
     """
     sheet = _unplanned_sheet(deployment, settings, material_for(settings))
-    held, pulled = panels_to_pin(deployment, sheet, settings.width_mm, 2)
+    cut_away = sheet.network.panel_count - len(among)
+    order = panels_to_pin(deployment, sheet, settings.width_mm, 2 + cut_away)
+    held, pulled, *_ = [panel for panel in order if panel in among]
     return held, pulled
 
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from kirigami_studio.assembly.checks import closed_holes
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
@@ -629,18 +630,10 @@ def _of_design(candidate: Candidate) -> list[Problem]:
 def _of_holes(candidate: Candidate, width_mm: float) -> list[Problem]:
     """Holes of the target that the trimmed sheet does not show, and where on it they would be."""
     trim = candidate.trim
-    if trim is None or not trim.closed_holes:
+    if trim is None or not trim.holes:
         return []
     flat = deploy(trim.sheet).compact
-    low, scale = flat.min(axis=0), width_mm / float(np.ptp(flat[:, 0]))
-    problems = []
-    for small in (True, False):
-        closed = [hole for hole in trim.closed_holes if hole.is_small is small]
-        if closed:
-            x, y = ((np.array(closed[0].place) - low) * scale).tolist()
-            code, where = "trim.hole_too_small" if small else "trim.hole_holds_sheet", {"x": x, "y": y}
-            problems.append(Problem.warning(code, (x, y), count=len(closed), total=len(trim.holes), **where))
-    return problems
+    return closed_holes(trim.holes, flat.min(axis=0), width_mm / float(np.ptp(flat[:, 0])))
 
 
 def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:
