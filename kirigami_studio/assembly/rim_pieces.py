@@ -186,10 +186,13 @@ def _cut(
     """
     motion, body = shaping.motion, shaping.bodies[index]
     whole = shaping.held_together(index, wanted)
-    if whole is None:
-        pins = as_points(motion.corners[index][motion.hinged[index]])
-        links = shortest_links(body, pins, mine, 0.5 * float(shaping.neck_mm[index]))
-        whole = shaping.held_together(index, united(wanted, shared(body, links)))
+    pins, half = as_points(motion.corners[index][motion.hinged[index]]), 0.5 * float(shaping.neck_mm[index])
+    # In a hole they are nowhere hidden: as near to its rim as there is a way.
+    for beyond in (*BEYOND_MM, math.inf) if to_necks else (math.inf,):
+        if whole is None:
+            room = body if beyond == math.inf else shared(body, united(wanted, mine.buffer(beyond)))
+            links = shortest_links(room, pins, mine, half)
+            whole = shaping.held_together(index, united(wanted, shared(body, links)))
     if whole is not None and (to_necks or whole.area >= LEAST_KEPT * body.area):
         yield whole
     for beyond in BEYOND_MM:
@@ -198,14 +201,14 @@ def _cut(
             yield whole
 
 
-def shortest_links(body: Polygon, pins: FloatArray, inside: BaseGeometry, half_mm: float) -> BaseGeometry:
+def shortest_links(body: BaseGeometry, pins: FloatArray, inside: BaseGeometry, half_mm: float) -> BaseGeometry:
     """Necks that join the pins of a piece and its largest part in an area, the shortest outside.
 
     They follow the middles of the sides of triangles that the piece is divided in, where it has a neck's width.
 
     Parameters
     ----------
-    body : Polygon
+    body : geometry
     pins : (K, 2) float, mm
     inside : geometry
     half_mm : float
