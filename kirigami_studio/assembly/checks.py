@@ -18,7 +18,7 @@ from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.pinned import PinnedPlan
 from kirigami_studio.assembly.shaping import united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
-from kirigami_studio.evaluate.trimming import MOSTLY_OPEN, TrimmedHole
+from kirigami_studio.evaluate.trimming import MOSTLY_OPEN, SMALL_HOLE, TrimmedHole
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
@@ -134,10 +134,10 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
         piece.id: (float(x), float(y))
         for piece, (x, y, _) in zip(assembly.pieces, assembly.poses(math.pi), strict=True)
     }
-    problems = [
-        *_broken(plan, places),
-        *closed_holes(shown_holes(plan, bodies, silhouette), np.zeros(2), assembly.cell_mm),
-    ]
+    problems = _broken(plan, places)
+    ear = 0.25 * math.pi * (options.ear_mm / assembly.cell_mm) ** 2
+    shown = shown_holes(plan, bodies, silhouette)
+    problems += closed_holes(shown, np.zeros(2), assembly.cell_mm, "pinned.hole_too_small", ear)
     needed = options.ear_mm + options.clearance_mm
     if plan.gap_mm < needed - ROUNDNESS_MM:
         problems.append(
@@ -340,7 +340,13 @@ def shown_holes(plan: PinnedPlan, bodies: Sequence[BaseGeometry], silhouette: Ba
     return tuple(found)
 
 
-def closed_holes(holes: Sequence[TrimmedHole], low: FloatArray, cell_mm: float) -> list[Problem]:
+def closed_holes(
+    holes: Sequence[TrimmedHole],
+    low: FloatArray,
+    cell_mm: float,
+    too_small: str = "trim.hole_too_small",
+    least: float = SMALL_HOLE,
+) -> list[Problem]:
     """Warn of holes of the target that stay closed, and where on the flat sheet they would be.
 
     Parameters
@@ -348,14 +354,16 @@ def closed_holes(holes: Sequence[TrimmedHole], low: FloatArray, cell_mm: float) 
     holes : sequence of TrimmedHole
         All holes of the target.
     low : (2,) float, unit cells
-        What lies at the origin of the places that are told.
+        Of the frame of these places; problems count from there.
     cell_mm : float
+    too_small : str
+        Code for holes below ``least``, unit cells squared.
     """
     problems = []
     closed = [hole for hole in holes if hole.open < MOSTLY_OPEN]
     for code, some in (
-        ("trim.hole_too_small", [hole for hole in closed if hole.is_small]),
-        ("trim.hole_holds_sheet", [hole for hole in closed if not hole.is_small]),
+        (too_small, [hole for hole in closed if hole.cells < least]),
+        ("trim.hole_holds_sheet", [hole for hole in closed if hole.cells >= least]),
     ):
         if some:
             x, y = ((np.array(some[0].place) - low) * cell_mm).tolist()

@@ -114,7 +114,9 @@ def pinned(
         opened = EndState.of(deployment, panels, phi, cell_mm, shown, options.reach_mm)
         closed = EndState.of(deployment, panels, math.pi, cell_mm, flat, options.reach_mm)
         spare = (1.0 - options.least_flat) * flat.area
-        spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
+        # Of the flat outline of a cover there is no more than its trim leaves.
+        most = math.inf if design.trim is not None and design.trim.given_up else spare
+        spare -= min(spare, trim_to(shaping, opened, most if options.weight >= 0.5 else 0.0))
         trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
         extend_to(shaping, opened, closed, MOST_BEYOND * spare)
         extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)

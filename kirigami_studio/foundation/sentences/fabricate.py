@@ -549,6 +549,12 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "hold.nothing_meets_flat": mark("Nothing keeps the sheet flat: no edges meet there that are long enough."),
     "pinned.not_made": mark("The pieces of this design could not be made ({reason:.200}). Choose another design."),
+    "pinned.hole_too_small": mark_n(
+        "{count} of {total} holes stays closed, for it is smaller than an ear, at x = {x:.1f}, y = {y:.1f} mm. Make "
+        "the sheet larger, or fill it.",
+        "{count} of {total} holes stay closed, for they are smaller than an ear, as at x = {x:.1f}, y = {y:.1f} mm. "
+        "Make the sheet larger, or fill them.",
+    ),
     "pinned.falls_apart": mark_n(
         "Piece {piece} falls apart: the ears of its neighbours cut it through. Make the ears smaller or the sheet "
         "larger.",
