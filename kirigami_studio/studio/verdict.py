@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from kirigami_studio.assembly.checks import closed_holes
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
@@ -624,7 +624,11 @@ def _of_wishes(plan: CutPlan) -> list[Problem]:
 
 def _of_design(candidate: Candidate) -> list[Problem]:
     """A sheet that was fitted for trimming is free of contacts; its score is that of the sheet before."""
-    return [] if candidate.score.feasible or candidate.trim is not None else [Problem.error("rank.not_feasible")]
+    by_hand = (
+        candidate.origin is Origin.EDITED and candidate.trim is not None and candidate.trim.sheet == candidate.sheet
+    )
+    fitted = candidate.trim is not None and not by_hand
+    return [] if candidate.score.feasible or fitted else [Problem.error("rank.not_feasible")]
 
 
 def _of_holes(candidate: Candidate, width_mm: float) -> list[Problem]:
