@@ -624,10 +624,8 @@ def _of_wishes(plan: CutPlan) -> list[Problem]:
 
 def _of_design(candidate: Candidate) -> list[Problem]:
     """A sheet that was fitted for trimming is free of contacts; its score is that of the sheet before."""
-    by_hand = (
-        candidate.origin is Origin.EDITED and candidate.trim is not None and candidate.trim.sheet == candidate.sheet
-    )
-    fitted = candidate.trim is not None and not by_hand
+    trim = candidate.trim
+    fitted = trim is not None and (candidate.origin is not Origin.EDITED or trim.sheet != candidate.sheet)
     return [] if candidate.score.feasible or fitted else [Problem.error("rank.not_feasible")]
 
 

@@ -286,9 +286,7 @@ def test_that_escape_takes_a_drag_back_without_a_step(by_hand: MainWindow, until
         assert view.design.deployment.field == before.sheet.field
 
 
-def test_that_a_trimmed_design_is_trimmed_again_after_a_change_and_comes_back_with_undo(
-    by_hand: MainWindow, until: Until
-) -> None:
+def test_that_a_trim_is_made_again_after_a_change_and_comes_back_with_undo(by_hand: MainWindow, until: Until) -> None:
     by_hand.services.chosen.trim(True)
     until(lambda: chosen(by_hand).trim is not None)
     trimmed = chosen(by_hand)
