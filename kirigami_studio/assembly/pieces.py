@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment, check_phi, rotate
 
 
@@ -120,10 +120,21 @@ class Assembly:
         """Pieces by their ids."""
         return {piece.id: piece for piece in self.pieces}
 
+    @cached_property
+    def numbers(self) -> IntArray:
+        """Numbers (P,) of the pieces' panels in the sheet, row by row."""
+        rows, columns = np.array([piece.panel for piece in self.pieces], dtype=np.int64).T
+        return np.asarray(rows * (self.deployment.topology.columns + 1) + columns)
+
+    def piece_on(self, panel: int) -> Piece:
+        """The first piece on the panel of a number."""
+        return self.pieces[int(np.argmax(self.numbers == panel))]
+
     @property
     def left_out(self) -> int:
-        """How many nodes that two panels share have no pin."""
-        return len(np.unique(self.deployment.topology.void_nodes)) - len(self.hinges)
+        """How many nodes that two panels with pieces share have no pin."""
+        nodes = self.deployment.topology.panel_nodes.reshape(-1, 4)[np.unique(self.numbers)]
+        return int(np.count_nonzero(np.bincount(nodes.ravel()) > 1)) - len(self.hinges)
 
     def poses(self, phi: float) -> FloatArray:
         """Place of every piece at angle ``phi``, in the order of the pieces.

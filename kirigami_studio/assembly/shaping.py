@@ -15,6 +15,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.assembly.motion import GeometryArray, LayerMotion, discs, polygons, swept_discs, swept_hulls
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.evaluate.kept_panels import PanelTable
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
 
@@ -110,12 +111,23 @@ class Shaping:
         self.bodies = np.full(len(self.motion.layer), Polygon(), dtype=object)
 
     @classmethod
-    def of(cls, deployment: Deployment, cell_mm: float, phi_target: float, options: PinOptions) -> Shaping:
-        """Panels with ears, less what the ears of their neighbours sweep.
+    def of(
+        cls,
+        deployment: Deployment,
+        cell_mm: float,
+        phi_target: float,
+        options: PinOptions,
+        panels: PanelTable | None = None,
+        unwanted: Sequence[int] = (),
+    ) -> Shaping:
+        """Panels, all or some, with ears, less what the ears of their neighbours sweep.
 
+        Pins of ``unwanted`` nodes are left out first, one after the other, as long as the sheet keeps its one motion.
         Pins without wall or neck are left out as long as the sheet keeps its one motion: their ears cut nothing then.
         """
-        motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane)
+        motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane, panels)
+        for node in unwanted:
+            motion = motion.without([node])
         made = cls(motion, options)
         blanks = polygons(motion.corners)
         if options.in_one_plane:  # any two sides may meet
@@ -248,15 +260,17 @@ class Shaping:
             return strips
         lines: list[ComplexArray] = []
         owners: list[IntArray] = []
-        upper: IntArray = np.arange(len(motion.layer)).reshape(-1, columns + 1)[:-1, :-1]
+        place = np.full(ratios.size + sum(ratios.shape) + 1, -1)
+        place[motion.panel] = np.arange(len(motion.panel))
+        upper: IntArray = np.arange(len(place)).reshape(-1, columns + 1)[:-1, :-1]
         # Around a void: upper left with its lower right side, and so on; (panel, first corner, second corner).
         long_diagonal = [(upper, 2, 3), (upper + columns + 2, 0, 1)]
         short_diagonal = [(upper + 1, 1, 2), (upper + columns + 1, 3, 0)]
         for pair, longer in ((long_diagonal, ratios < 1.0), (short_diagonal, ratios > 1.0)):
             for panel, start, end in pair:
-                corners = motion.corners[panel[longer]]
-                lines.append(corners[:, [start, end]])
-                owners.append(panel[longer])
+                owner = place[panel[longer]]
+                owners.append(owner[owner >= 0])
+                lines.append(motion.corners[owners[-1]][:, [start, end]])
         sides = np.asarray(shapely.linestrings(as_points(np.concatenate(lines))), dtype=object)
         wide = shapely.buffer(sides, 0.5 * self.options.side_mm, cap_style="flat")
         return _united_by(wide, np.concatenate(owners), len(strips))

@@ -159,9 +159,6 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
-    gap_mm = pin_gap_mm(cut)
-    if gap_mm and target.holes:
-        raise FabricationError("pinned.target_has_holes", count=len(target.holes))
     return Request.of(
         target,
         wanted,
@@ -171,7 +168,7 @@ def request_for(
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
         room_mm=sizes_of(cut)[1],
         span_mm=_span_of(cut),
-        least_gap_mm=gap_mm,
+        least_gap_mm=pin_gap_mm(cut),
     )
 
 

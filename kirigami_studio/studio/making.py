@@ -68,7 +68,7 @@ if TYPE_CHECKING:
     from kirigami_studio.fabricate.checks import PlanReport
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
-    from kirigami_studio.foundation.arrays import FloatArray
+    from kirigami_studio.foundation.arrays import ShapeRings
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.pipeline.request import Request
     from kirigami_studio.project.document import Document
@@ -396,11 +396,12 @@ def pieces_of(request: CutRequest) -> MadePieces:
     if target is None:
         raise ProjectError("export.no_chosen_design")
     made = _with_artwork(assembled(request.candidate, settings, target), request.artwork, target)
-    shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
+    opened = made.plan.opened
+    shown = tuple(shapely.get_coordinates(ring)[:-1] for ring in (opened.exterior, *opened.interiors))
     verdict = judge_assembled(request.candidate, made, settings)
     job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
-    grips = grips_on_pins(made.assembly.deployment, settings)
-    names = [made.assembly.pieces[panel].id for panel in grips]
+    grips = grips_on_pins(made.assembly.deployment, settings, made.assembly.numbers.tolist())
+    names = [made.assembly.piece_on(panel).id for panel in grips]
     return MadePieces(made, replace(job, grips=(names[0], names[1])), verdict, grips)
 
 
@@ -423,7 +424,7 @@ def _with_artwork(made: Assembled, artwork: Artwork | None, target: Outline) -> 
     )
 
 
-def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> PrintJob:
+def _print_job(request: CutRequest, made: Assembled, shown: ShapeRings) -> PrintJob:
     from kirigami_studio.export.print_files import PrintJob
 
     settings = request.settings
@@ -441,7 +442,7 @@ def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> Print
     )
 
 
-def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdict: Verdict) -> AssemblyJob:
+def _assembly_job(request: CutRequest, made: Assembled, shown: ShapeRings, verdict: Verdict) -> AssemblyJob:
     from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.project.store import packed_design
 

@@ -513,7 +513,7 @@ class LayoutView(Canvas):
         if Overlay.GRIPS not in self.overlays:
             return []
         if self._pieces is not None and self._pieces.grips is not None:
-            held, pulled = (self._pieces.assembly.pieces[panel].id for panel in self._pieces.grips)
+            held, pulled = (self._pieces.assembly.piece_on(panel).id for panel in self._pieces.grips)
             return [
                 Chip((palette.text,), tr("hold {piece}", piece=held)),
                 Chip((palette.good,), tr("pull {piece}", piece=pulled)),
