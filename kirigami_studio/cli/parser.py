@@ -100,7 +100,8 @@ PARTS = (
            help="a place that does not belong to it, such as its shadow, or several"),
     option("--join", choices=[join.value for join in Join], default=None,
            help="how parts become one outline: union of what touches, bridges between nearest places, convex hull, or "
-                "a tight hull (default union; all parts with the others)"),
+                "a tight hull; for design also each: every piece is a sheet of its own, all to one scale (default "
+                "union; all parts with the others)"),
     option("--fill-holes", action=argparse.BooleanOptionalAction, default=None,
            help="fill the holes of the target, or keep all of them (default: holes are kept, but for those around "
                 "which only a line would stay)"),
