@@ -427,7 +427,6 @@ def test_that_pieces_of_one_name_are_told_apart(svg) -> None:
     source = read_parts(svg(body, MM))
     found = merged(source, source.parts, Merging(Join.EACH))
     assert [one.outline.name for one in found.all] == ["dot", "dot 2"]
-    assert found.outline == found.others[0].outline  # one shape twice
 
 
 def test_that_a_piece_in_the_hole_of_another_one_is_a_sheet_too(svg) -> None:
