@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import re
 import zipfile
 import zlib
 from dataclasses import dataclass, replace
@@ -37,8 +38,9 @@ FORMAT = "kirigami-studio project"
 #: 1024 candidates at 64 x 64 are 34 MB of ratios; whatever unpacks to more is no project.
 LARGEST_FILE = 64 * 2**20
 LARGEST_CONTENT = 128 * 2**20
-#: A document has four and its pictures, every part of its target three.
-MOST_MEMBERS = 16 + 3 * MOST_PARTS
+MOST_MEMBERS = 16
+#: Members of other parts of the target are counted by themselves: each part has its design and two arrays.
+OF_A_PART, MOST_OF_PARTS = re.compile(r"part-\d{1,3}-[a-z.]{1,16}"), 3 * (MOST_PARTS - 1)
 #: The zip format's first day: the same document gives the same bytes on every day.
 _FIXED_DATE = (1980, 1, 1, 0, 0, 0)
 
@@ -208,7 +210,8 @@ def _unpack(content: bytes) -> Members:
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             entries = archive.infolist()
-            if len(entries) > MOST_MEMBERS:
+            of_parts = sum(OF_A_PART.fullmatch(entry.filename) is not None for entry in entries)
+            if len(entries) - of_parts > MOST_MEMBERS or of_parts > MOST_OF_PARTS:
                 raise ProjectError("project.too_many_members", members=len(entries), limit=MOST_MEMBERS)
             for entry in entries:
                 members[entry.filename] = _read_member(archive, entry, budget)

@@ -167,3 +167,13 @@ def test_that_a_part_is_put_back_among_the_others(letter, candidates) -> None:
     changed = target_parts.with_part(letter, 1, part)
     assert changed.part == 0 and changed.parts[1].candidates == part.candidates
     assert target_parts.with_part(show_part(letter, 1).document, 1, part).candidates == part.candidates
+
+
+def test_that_a_file_of_more_parts_than_a_target_can_have_is_refused_unread(letter, tmp_path: Path) -> None:
+    path = tmp_path / "crowd.kiri"
+    path.write_bytes(pack(letter))
+    with zipfile.ZipFile(path, "a") as archive:
+        for number in range(2, 72):
+            archive.writestr(f"part-{number}-design.json", b"")
+    with refused(ProjectError, "project.damaged"):
+        load(path)
