@@ -10,6 +10,8 @@ from pathlib import Path
 from kirigami_studio.export.dxf import check_written, strokes_dxf
 from kirigami_studio.export.layer_files import OWN_NAME, fill_layer_folder, layer_folder, whole_folder
 from kirigami_studio.export.lightburn import strokes_lightburn, write_project
+from kirigami_studio.export.paper import Paper
+from kirigami_studio.export.pdf import write_bed_pdf
 from kirigami_studio.export.profile import DEFAULT_PROFILE, DxfVersion, Profile, find_profile
 from kirigami_studio.export.sheet_bed import SheetBed
 from kirigami_studio.export.strokes import extent
@@ -19,7 +21,7 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 
 #: Kinds of cut files that hold sheets of several designs.
-KINDS = (".dxf", ".svg", ".lbrn2")
+KINDS = (".dxf", ".svg", ".pdf", ".lbrn2")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,6 +30,7 @@ class BedFile:
 
     profile: str = DEFAULT_PROFILE  #: key of the machine profile
     dxf_version: DxfVersion = DxfVersion.R2010
+    paper: str = Paper.NONE  #: of PDFs
     record: bytes = b""  #: the designs as a packed project, which the first DXF and SVG carry; empty for none
 
     def profile_of(self, kind: str) -> Profile:
@@ -40,7 +43,8 @@ class BedFiles:
     """The written files."""
 
     files: tuple[Path, ...]  #: one for each bed; a folder stands for the files of its layers
-    verifications: tuple[Verification, ...]  #: one for each sheet, in the order in which sheets were given
+    #: One for each sheet, in the order in which sheets were given; PDFs, which are no cut files, have none.
+    verifications: tuple[Verification, ...]
 
 
 def bed_path(path: Path, number: int) -> Path:
@@ -72,6 +76,10 @@ def write_beds(
     if kind == ".lbrn2" and find_profile(how.profile).slots:
         raise ExportError("lightburn.open_cuts_only")
     level = judged(())
+    if kind == ".pdf":
+        for bed in beds:
+            write_bed_pdf(bed, bed_path(path, bed.number), how.paper, level)
+        return BedFiles(tuple(bed_path(path, bed.number) for bed in beds), ())
     while True:
         with tempfile.TemporaryDirectory(prefix="kirigami-", ignore_cleanup_errors=True) as folder:
             drafts = [_written(bed, bed_path(Path(folder) / path.name, bed.number), how, level) for bed in beds]

@@ -67,6 +67,16 @@ class SheetBed:
         """Least distance between the cuts of neighbours."""
         return min(sheet.plan.options.copy_gap_mm for sheet in self.sheets)
 
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        """Width and height of everything that the head cuts, from (0, 0)."""
+        corners = [
+            place.put(np.array(sheet.plan.bounds_mm) * [(0, 0), (1, 1)])
+            for sheet, place in zip(self.sheets, self.places, strict=True)
+        ]
+        width, height = np.concatenate(corners).max(axis=0).tolist()
+        return width, height
+
     def strokes(self, profile: Profile) -> tuple[Stroke, ...]:
         """Everything that a file of this profile draws, in the order of cutting."""
         return (*self._placed(name_strokes, profile), *self._placed(sheet_strokes, profile))

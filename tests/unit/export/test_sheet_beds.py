@@ -13,10 +13,13 @@ from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.export.bed_files import BedFile, write_beds
 from kirigami_studio.export.dxf_check import check_file
+from kirigami_studio.export.paper import tile
+from kirigami_studio.export.pdf import length_in_cell, one_page, read_pages
+from kirigami_studio.export.picture import LAYER_COLOUR
 from kirigami_studio.export.profile import PROFILES, find_profile
 from kirigami_studio.export.sheet_bed import BedSheet, allotted, sheets_on_beds
 from kirigami_studio.export.verification import verify_bed
-from kirigami_studio.fabricate.cut_plan import CutPlan, plan_cuts
+from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
 from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.machine import machines
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
@@ -153,7 +156,7 @@ def test_that_a_kerf_as_wide_as_the_gap_and_other_kinds_of_files_are_refused(she
     with refused(FabricationError, "copies.gap_too_narrow"):
         sheets_on_beds(tight)
     with refused(ExportError, "parts.no_such_file"):
-        write_beds(sheets_on_beds(sheets), tmp_path / "cut.pdf", BedFile(), never_judged)
+        write_beds(sheets_on_beds(sheets), tmp_path / "cut.stl", BedFile(), never_judged)
 
 
 def test_that_strokes_are_told_apart_by_their_place_on_their_layer() -> None:
@@ -168,3 +171,16 @@ def test_that_the_same_sheets_give_the_same_bytes(sheets, tmp_path: Path) -> Non
         write_beds(sheets_on_beds(sheets), tmp_path / f"{name}.dxf", BedFile(record=b"design"), never_judged)
     assert (tmp_path / "one.dxf").read_bytes() == (tmp_path / "two.dxf").read_bytes()
     assert find_profile("any").key == "any" and np.isfinite(sheets[0].plan.cut_length_mm)
+
+
+@pytest.mark.parametrize("paper", ["none", "a4"])
+def test_that_a_pdf_holds_the_sheets_at_true_size(paper: str, sheets, tmp_path: Path) -> None:
+    (bed,) = sheets_on_beds(sheets)
+    write_beds([bed], tmp_path / "cut.pdf", BedFile(paper=paper), never_judged)
+    pages = read_pages(tmp_path / "cut.pdf")
+    tiling = one_page(bed.size_mm) if paper == "none" else tile(bed.size_mm, paper)
+    drawn = sum(
+        length_in_cell(page, part, LAYER_COLOUR[Layer.OUTLINE])
+        for page, part in zip(pages[-len(tiling.tiles) :], tiling.tiles, strict=True)
+    )
+    assert drawn == pytest.approx(sum(Polygon(sheet.plan.outline).length for sheet in sheets), rel=1e-4)
