@@ -101,6 +101,7 @@ class Verification:
     #: radians; where the sheet jams, 0 if it closes: by its simulation where that is known and the file is as planned,
     #: else by the estimate for these centres; None where nothing is known
     jam_phi: float | None = None
+    sheet: str = ""  #: Name of the sheet that it is about, of a file that holds several
 
 
 @dataclass(frozen=True, slots=True)

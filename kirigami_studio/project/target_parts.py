@@ -29,18 +29,25 @@ def set_parts(document: Document, pieces: Sequence[PlacedTarget]) -> Edit:
     it, and the others are to that scale.
     """
     largest = max((outline for outline, _ in pieces), key=_drawn)
-    changed = sized(with_parts(as_drawn(document, largest), pieces))
+    changed = with_parts(as_drawn(document, largest), pieces)
     label = tr_n("Set a target of {count} part", "Set a target of {count} parts", len(pieces))
     return Edit(label, showing(changed, 0))
 
 
 def with_parts(document: Document, pieces: Sequence[PlacedTarget]) -> Document:
-    """The document with targets beside each other, sized by the largest, which is shown."""
+    """The document with targets beside each other, sized by the largest, which is shown.
+
+    It opens to the size that was asked for, else to the one that its sheet is expected to give it.
+    """
     first = max(range(len(pieces)), key=lambda number: _drawn(pieces[number][0]))
     empty = replace(without_designs(document, None), other_parts=(), part=0, runs=0)
     parts = [replace(empty, target=outline, place=place) for outline, place in pieces]
     others = tuple(part for number, part in enumerate(parts) if number != first)
-    return replace(parts[first], other_parts=others, part=first)
+    found = replace(parts[first], other_parts=others, part=first)
+    size = size_of(found)
+    assert size is not None  # it has a target
+    cut = found.fabrication
+    return sized(replace(found, fabrication=replace(cut, opened_mm=cut.opened_mm or max(size.opened))))
 
 
 def show_part(document: Document, number: int) -> Edit:

@@ -170,6 +170,11 @@ class PartChoice:
         words = parts if parts is not None else ALL if several else LARGEST
         return cls(words, Merging(way, bridge, stroke is not None, stroke or None))
 
+    @property
+    def is_each(self) -> bool:
+        """Whether every piece is to be a sheet of its own."""
+        return self.merging.join is Join.EACH
+
     def outline(self, path: Path, threshold: float | None = None) -> Outline:
         """The outline of the chosen parts of a file, or of the object; ``threshold`` is that of a picture.
 

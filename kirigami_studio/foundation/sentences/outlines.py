@@ -146,6 +146,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The parts are {count} pieces, each a sheet of its own; this takes one shape. Join them by bridges, or choose "
         "one."
     ),
+    "parts.each_on_cluster": mark(
+        "A scheduler designs single targets: leave --scheduler out, or join the parts of each drawing."
+    ),
     "parts.not_a_drawing": mark(
         "'{source:.80}' has no parts to choose from. Options about parts are for files: {kinds}."
     ),
