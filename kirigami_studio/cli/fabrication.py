@@ -443,6 +443,11 @@ def _checked_json(found: Checked) -> dict[str, object]:
         "record": None if record is None else record.to_json(),
         "verdict_at_export": None if found.said is None else found.said.value,
     }
+    if report.sheets:
+        records = [None if sheet.record is None else sheet.record.to_json() for sheet in report.sheets]
+        answer["sheets"] = [
+            {"record": record, "pieces": sheet.pieces} for record, sheet in zip(records, report.sheets, strict=True)
+        ]
     if found.verification is not None:
         answer["void_miss_um"] = found.verification.void_miss_um
     if found.verdict is not None:

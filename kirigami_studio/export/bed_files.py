@@ -114,6 +114,12 @@ def _put(draft: Path, goal: Path) -> Path:
     return goal
 
 
+def bed_project(bed: SheetBed, verdict: str) -> bytes:
+    """The LightBurn project of a bed."""
+    profile, plan = find_profile("lightburn"), bed.sheets[0].plan
+    return strokes_lightburn(bed.strokes(profile), plan.material, plan.machine, bed.facts(profile, verdict))
+
+
 def _written(bed: SheetBed, path: Path, how: BedFile, verdict: str) -> tuple[Path, tuple[Verification, ...]]:
     """Write the file of a bed, and read it back twice."""
     kind = path.suffix.lower()
@@ -122,8 +128,7 @@ def _written(bed: SheetBed, path: Path, how: BedFile, verdict: str) -> tuple[Pat
     record = how.record if bed.number == 1 else b""
     size, project = extent(strokes), b""
     if kind == ".lbrn2":
-        plan = bed.sheets[0].plan
-        project = strokes_lightburn(strokes, plan.material, plan.machine, facts)
+        project = bed_project(bed, verdict)
         write_project(project, strokes, path)
     elif kind == ".svg":
         title = f"Kirigami cut plan, {len(bed.sheets)} sheets, {size[0]:g} x {size[1]:g} mm"

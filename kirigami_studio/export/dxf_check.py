@@ -20,6 +20,7 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.assembly.nesting import LaidShape
 from kirigami_studio.export.dxf_reading import (
     FARTHEST_MM,
     FLATTEN_MM,
@@ -34,7 +35,8 @@ from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRe
 from kirigami_studio.export.layer_files import MARK_GAP_MM, REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import NAME_LAYER
-from kirigami_studio.export.provenance import AROUND, BOX, PROGRAM, SHEETS, SLOT_KERF, THROUGH
+from kirigami_studio.export.provenance import AROUND, BOX, PLACE, PROGRAM, SHEETS, SLOT_KERF, THROUGH
+from kirigami_studio.export.sheet_bed import place_of_text
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
@@ -90,6 +92,7 @@ class FileReport:
     record: FileRecord | None = None
     of_pieces: PieceRecord | None = None  #: the same of a bed with the pieces of an assembly
     sheets: tuple[FileReport, ...] = ()  #: of each sheet of a bed with those of several designs
+    place: LaidShape | None = None  #: where such a sheet lies, as the file has it
 
     @property
     def ok(self) -> bool:
@@ -147,7 +150,8 @@ def _of_sheets(path: Path, content: DxfContent, kerf_mm: float | None) -> FileRe
         facts = {key.removeprefix(start): text for key, text in content.facts.items() if key.startswith(start)}
         layers = tuple(name for name in content.layers if any(one.layer == name for one in own))
         sheet = replace(content, paths=own, facts=facts | part, layers=layers, problems=[])
-        reports.append(_judged(path, sheet, kerf_mm))
+        place = place_of_text(facts.get(PLACE, ""), number - 1)
+        reports.append(replace(_judged(path, sheet, kerf_mm), place=place))
     for report in reports:
         problems += [problem for problem in report.problems if problem not in problems]
     points = np.concatenate([found.points for found in content.paths] or [np.zeros((1, 2))])

@@ -54,7 +54,7 @@ RECORDED_FACTS = (
     "SLOT_KERF_MM", "STYLE", "ORDER", "PROFILE", "MATERIAL", "MACHINE", "LINES", "TRIMMED", "TABS", "TABS_ASKED",
     "TAB_MM", "JOINS", "HOLES",
     "PART", "COPIES", "COPIES_ASKED", "COPY_GAP_MM", "NAME", "ENGRAVED_LINES", "VERDICT", "PURPOSE",
-    "LAYER", "BED", "SHEETS", "BOX_MM", "PIECES", "PIN_MM", "EAR_MM", "CLEARANCE_MM", "FASTENER",
+    "LAYER", "BED", "SHEETS", "BOX_MM", "PLACE", "PIECES", "PIN_MM", "EAR_MM", "CLEARANCE_MM", "FASTENER",
 )  # fmt: skip
 RECORDED_LISTS, MOST_PIECES = ("HINGE_MM", "REMOVED"), 400
 #: Sheets of several designs in one file whose records are read.

@@ -44,8 +44,8 @@ AROUND = "HOLES_AROUND"
 THROUGH = "HOLES_THROUGH"
 #: The fact with the number of sheets of several designs, each of which has a record of its own.
 SHEETS = "SHEETS"
-#: The fact in such a record with the corners of the box round the sheet.
-BOX = "BOX_MM"
+#: Facts in such a record: the corners of the box round the sheet, and its shift with the number of quarter turns.
+BOX, PLACE = "BOX_MM", "PLACE"
 #: Raised when entries change their meaning.
 VERSION = 1
 

@@ -6,6 +6,8 @@ before the next begins.  A file says of every sheet what the file of that sheet 
 
 from __future__ import annotations
 
+import math
+import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,13 +19,25 @@ import numpy as np
 from kirigami_studio import __version__
 from kirigami_studio.assembly.nesting import LaidShape, nested
 from kirigami_studio.export.profile import Profile
-from kirigami_studio.export.provenance import BOX, ONE_SHEET, PROGRAM, SHEETS, VERDICT, exactly, facts_of, origin_facts
+from kirigami_studio.export.provenance import (
+    BOX,
+    ONE_SHEET,
+    PLACE,
+    PROGRAM,
+    SHEETS,
+    VERDICT,
+    exactly,
+    facts_of,
+    origin_facts,
+)
 from kirigami_studio.export.strokes import Stroke, extent, name_strokes, sheet_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
 
+#: A shift, mm, and the number of quarter turns.
+_PLACE = re.compile(r"(-?\d{1,4}\.\d{4}) (-?\d{1,4}\.\d{4}) ([0-3])", re.ASCII)
 #: Strokes of a plan in a profile.
 _Drawn = Callable[[CutPlan, Profile], tuple[Stroke, ...]]
 
@@ -122,8 +136,10 @@ class SheetBed:
         first, strokes = self.sheets[0].plan, self.cuts(profile)
         width, height = extent(strokes)
         alone = [
-            facts_of(replace(sheet.plan, verdict=verdict), profile) | {BOX: " ".join(f"{side:.4f}" for side in box)}
-            for sheet, box in zip(self.sheets, self._boxes(profile), strict=True)
+            facts_of(replace(sheet.plan, verdict=verdict), profile)
+            | {"COPY_GAP_MM": exactly(self.gap_mm)}
+            | {BOX: " ".join(f"{side:.4f}" for side in box), PLACE: place_text(place)}
+            for sheet, box, place in zip(self.sheets, self._boxes(profile), self.places, strict=True)
         ]
         return {
             PROGRAM: __version__,
@@ -146,6 +162,20 @@ class SheetBed:
 def of_sheet(facts: Mapping[str, str], number: int) -> dict[str, str]:
     """The facts of a sheet, by its number from 1, as the file of its bed has them."""
     return {f"S{number}_{key}": text for key, text in facts.items()}
+
+
+def place_text(place: LaidShape) -> str:
+    """Where a sheet lies, as a file has it: its shift, mm, and how many quarter turns."""
+    x, y = place.shift.tolist()
+    return f"{x:.4f} {y:.4f} {round(place.turn / (0.5 * math.pi)) % 4}"
+
+
+def place_of_text(text: str, number: int) -> LaidShape | None:
+    """The place of a sheet, by its number from 0, that a file has; None for what no file of ours says."""
+    found = _PLACE.fullmatch(text)
+    if found is None:
+        return None
+    return LaidShape(number, np.array([float(found[1]), float(found[2])]), 0.5 * math.pi * int(found[3]))
 
 
 def allotted(layers: Sequence[str], planned: Sequence[Sequence[str]]) -> list[int]:

@@ -94,7 +94,7 @@ def part_of(document: Document, words: str) -> Document:
         number for number, name in enumerate(names) if words.strip().casefold() in (name.casefold(), f"{number + 1}")
     ]
     if not found:
-        raise UsageError("parts.unknown", name=words, names=", ".join(names))
+        raise UsageError("parts.no_such_part", name=words, names=", ".join(names))
     return replace(parts_as_cut(document)[found[0]], place=None)
 
 

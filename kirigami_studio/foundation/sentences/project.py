@@ -44,6 +44,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "project.no_such_part": mark(
         "There is no part {number} of this target: it has {parts} parts, counted from 0, and can have {limit}."
     ),
+    "parts.no_such_part": mark("The project has no part called '{name}'. It has {names}."),
     "parts.not_designed": mark("These parts have no design yet: {names}. Design them first, or choose a part."),
     "project.part_without_target": mark("Every part of a target needs a shape, and has no parts of its own."),
     "project.part_nowhere": mark("A part has no place in its drawing: ({x}, {y})."),
