@@ -79,6 +79,14 @@ def showing(document: Document, number: int) -> Document:
     return replace(shown, other_parts=(*kept[:number], *kept[number + 1 :]), part=number)
 
 
+def showing_target(document: Document, target: Outline) -> Document:
+    """The document with the part shown that has a target; as it is where that is shown, or none has it."""
+    if document.target == target:
+        return document
+    found = [number for number, part in enumerate(document.parts) if part.target == target]
+    return showing(document, found[0]) if found else document
+
+
 def with_part(document: Document, number: int, part: Document) -> Document:
     """The document with one part as it is in another one; the same part is shown as before."""
     if number == document.part:

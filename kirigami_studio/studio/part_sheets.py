@@ -217,7 +217,8 @@ def exporting_all(
     """Write what is asked for of a design, or of all parts of its project where its files hold them."""
     document = request.document
     if document is not None and writes_parts(document, output):
-        yield from exporting_parts(document, output, many_pages, cancel)
+        known = {} if request.as_cut is None else {request.candidate: request.as_cut}
+        yield from exporting_parts(document, output, many_pages, cancel, known)
     else:
         yield from exporting(request, output, many_pages, cancel)
 
