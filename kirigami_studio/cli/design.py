@@ -62,6 +62,7 @@ from kirigami_studio.studio.designing import (
     completed,
     document_of,
     first_of_families,
+    limit_of_run,
     request_for,
     run_design,
     why_covered,
@@ -460,6 +461,9 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
     why = why_covered(result.candidates, result.request.target, result.request.start)
     if why is not None:
         answer["why_covered"] = {"code": why.code, "text": why.text}
+    limit = limit_of_run(result)
+    if limit is not None and limit != why:
+        answer["closed_limit"] = {"code": limit.code, "text": limit.text}
     if result.request.budget_seconds is not None:
         answer["budget_ended"] = result.budget_ended
     return answer
@@ -633,9 +637,9 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
         )
     (reason, *_) = result.ranking.reasons(result.candidates)
     say(f"{target.name}: {reason.text}")
-    why = why_covered(result.candidates, target, result.request.start)
-    if why is not None:
-        say(f"{target.name}: {why.text}")
+    limit = limit_of_run(result)
+    if limit is not None:
+        say(f"{target.name}: {limit.text}")
     if trim is not None:
         say(
             tr(
