@@ -456,9 +456,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "verify.copies": mark(
         "The file holds {count} copies of the sheet, alike and {gap_mm:g} mm apart: cutting it leaves {pieces} pieces."
     ),
-    "verify.sheets": mark("The file holds {count} sheets, at least {gap_mm:g} mm apart."),
+    "verify.sheets": mark("Sheets in the file: {count}, at least {gap_mm:g} mm apart."),
     "verify.sheets_meet": mark(
-        "The file should hold {count} sheets, at least {gap_mm:g} mm apart, and they meet. Export again."
+        "The sheets in the file should be {count}, at least {gap_mm:g} mm apart, and they meet. Export again."
     ),
     "parts.no_such_file": mark(
         "A file of kind '{extension}' cannot hold the sheets of several parts; known are {known}. Choose a part for "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QObject, QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QSizePolicy, QTabBar
+from PySide6.QtWidgets import QSizePolicy, QTabBar, QToolButton
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.run.generation import Generation
@@ -31,6 +31,10 @@ class PartBar(QTabBar):
         self.setUsesScrollButtons(True)
         self.setElideMode(Qt.TextElideMode.ElideRight)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        for name, text in (("ScrollLeftButton", tr("Earlier parts")), ("ScrollRightButton", tr("Later parts"))):
+            button = self.findChild(QToolButton, name)
+            if isinstance(button, QToolButton):  # Qt has no translation of its own for them
+                button.setAccessibleName(text)
         self.setVisible(False)
         self.currentChanged.connect(self.part_wanted.emit)
 
