@@ -111,7 +111,7 @@ class Designs(Sequence[Design]):
         return "" if why is None else why.text
 
     def closed_limit(self) -> str:
-        """What no closed sheet shows of the target, with the most that these designs do; "" where nothing is known."""
+        """Limit of closed sheets for the target, with the most that was found; "" for none."""
         limit = limit_of(self.document)
         return "" if limit is None else limit.text
 

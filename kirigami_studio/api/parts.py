@@ -42,7 +42,7 @@ class Parts(Sequence[Designs]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What the parts are called, in the order of the drawing."""
+        """Names of the parts, in the order of the drawing."""
         return part_names(self.document)
 
     @property
@@ -120,7 +120,7 @@ class ExportedParts:
 
     @property
     def verifications(self) -> tuple[Verification, ...]:
-        """What two readers found of every sheet; :attr:`Verification.sheet` is its part."""
+        """Findings of two readers on every sheet; :attr:`Verification.sheet` is its part."""
         return self.found.verifications
 
     @property

@@ -288,7 +288,7 @@ class PartsOutcome:
 
 
 def parts_of(whole: Document, designs: Sequence[DesignOutcome], folder: Path | None) -> PartsOutcome:
-    """The designs of all parts in one project, with its files in a folder, if there is to be one.
+    """One project of the designs of all parts, with its files in a folder if there is one.
 
     Raises
     ------

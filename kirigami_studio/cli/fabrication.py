@@ -213,7 +213,7 @@ def _export_parts(document: Document, output: Output, *, as_json: bool) -> int:
 
 
 def parts_json(found: ExportedFiles) -> dict[str, object]:
-    """What was written of all parts, and of each."""
+    """The JSON answer on the files of all parts, and on each."""
     verdict, work, parts = found.verdict, found.work, [_part_json(part) for part in found.parts]
     assert verdict is not None  # sheets are judged
     plans = [(part.planned.plan, part.planned.report) for part in found.parts if part.planned is not None]

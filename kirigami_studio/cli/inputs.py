@@ -138,7 +138,7 @@ def read_targets(
 def read_pieces(
     sources: Sequence[str], threshold: float | None, choice: PartChoice, fill_holes: bool | None = None
 ) -> Iterator[Named[tuple[PieceRead, ...]]]:
-    """Yield the pieces of every drawing that the sources name, in order, each to be a sheet of its own."""
+    """Yield the pieces of every drawing that the sources name, in order."""
     if threshold is not None and not 0.0 < threshold < 1.0:
         raise UsageError("option.threshold", value=threshold)
     for source in sources:

@@ -1,4 +1,4 @@
-"""Beds with sheets of several designs -> one cut file for each, read back by two readers before it appears."""
+"""Beds with sheets of several designs -> one cut file for each, read back twice."""
 
 from __future__ import annotations
 

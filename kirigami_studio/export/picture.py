@@ -168,7 +168,7 @@ class PlacedLayout:
 
 
 def write_parts_png(parts: Sequence[PlacedLayout], path: str | Path, longest: int = LONGEST_SIDE) -> None:
-    """Write the layouts of all parts at their target angles, each over its target and in its place.
+    """Write the layouts of all parts at their target angles, each in its place.
 
     Raises
     ------

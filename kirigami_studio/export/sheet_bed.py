@@ -1,4 +1,4 @@
-"""Sheets of several designs on the beds of a machine: strokes of one bed, and the record in its file.
+"""Sheets of several designs on the beds of a machine: strokes and record of a file.
 
 Every bed is one file: the names of all sheets first, then the cuts of one sheet after the other, so that each is done
 before the next begins.  A file says of every sheet what the file of that sheet alone would say.
@@ -51,7 +51,7 @@ class BedSheet:
     simulated_jam: float | None = None  #: radians; 0 if it closes; None where nobody has looked
 
     def strokes(self, profile: Profile) -> tuple[Stroke, ...]:
-        """What a file of the sheet alone would draw: its name first."""
+        """All strokes of a file of the sheet alone: its name first."""
         return (*name_strokes(self.plan, profile), *sheet_strokes(self.plan, profile))
 
 
@@ -119,7 +119,7 @@ class SheetBed:
         )
 
     def by_sheet(self, strokes: Sequence[Stroke], profile: Profile) -> list[list[Stroke]]:
-        """Strokes as read, in the order of a file, by the sheet that they belong to; each sheet where its plan has it.
+        """Strokes of a file by their sheets, each of them where its plan has it.
 
         Files are written sheet after sheet, or layer after layer with the sheets one after the other in each: on its
         layer, a stroke's place tells its sheet either way.  What is too much belongs to the last one.
@@ -171,7 +171,7 @@ def place_text(place: LaidShape) -> str:
 
 
 def place_of_text(text: str, number: int) -> LaidShape | None:
-    """The place of a sheet, by its number from 0, that a file has; None for what no file of ours says."""
+    """The place in a file of a sheet, by its number from 0; None for a text that is none."""
     found = _PLACE.fullmatch(text)
     if found is None:
         return None
@@ -202,7 +202,7 @@ def allotted(layers: Sequence[str], planned: Sequence[Sequence[str]]) -> list[in
 
 
 def sheets_on_beds(sheets: Sequence[BedSheet]) -> tuple[SheetBed, ...]:
-    """Lay sheets on as few beds of their machine as are found, those of the last one close together.
+    """Lay sheets on as few beds of their machine as are found.
 
     Raises
     ------

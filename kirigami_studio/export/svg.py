@@ -155,7 +155,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
 
 
 def write_parts_svg(parts: Sequence[PlacedLayout], path: str | Path) -> None:
-    """Draw the layouts of all parts, each over its target and in its place; as :func:`write_layout_svg`."""
+    """Draw the layouts of all parts, each in its place; as :func:`write_layout_svg`."""
     _write_layouts(parts, Path(path), "")
 
 
@@ -182,7 +182,7 @@ def _write_layouts(parts: Sequence[PlacedLayout], path: Path, caption: str) -> N
 
 
 def _layout_shapes(part: PlacedLayout) -> dict[str, list[list[FloatArray]]]:
-    """What is drawn of a layout, group by group: each shape as its rings (L, 2), mm."""
+    """Shapes of a layout, group by group, each as its rings (L, 2), mm."""
     job = part.job
     design, phi = job.posed, job.shown_phi
     tables = design.deployment.topology

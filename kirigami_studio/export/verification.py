@@ -160,7 +160,7 @@ def verify_export(
 def verify_bed(
     bed: SheetBed, path: str | Path, profile_key: str, version: str | None = "R2010", project: bytes = b""
 ) -> tuple[Verification, ...]:
-    """Read the file of a bed with two readers, and compare every sheet in it with its plan, as if it was alone.
+    """Read the file of a bed with two readers, and compare every sheet with its plan.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def verify_bed(
 
 
 def _alone(content: FileContent, strokes: Sequence[Stroke]) -> FileContent:
-    """What a reader would have found in the file of one sheet; the frame of a file is that of its cuts."""
+    """Content of the file of one sheet; the frame of a file is that of its cuts."""
     cuts = [stroke for stroke in strokes if stroke.layer != NAME_LAYER]
     return replace(content, strokes=tuple(strokes), extent=extent(cuts) if cuts else None)
 
@@ -219,7 +219,7 @@ def _apart(sheets: Sequence[Sequence[Stroke]], bed: SheetBed) -> Finding:
 
 
 def _read_twice(goal: Path, profile: Profile) -> tuple[Path, Format, list[FileContent]]:
-    """Where a file is, or the folder of its layers, what kind it is of, and what both readers find in it."""
+    """Place of a file or of the folder of its layers, its kind, and what both readers find."""
     if profile.file_per_layer and goal.suffix.lower() != ".svg":
         goal, kind = layer_folder(goal), FORMATS[".dxf"]
         parts = layer_paths(goal)

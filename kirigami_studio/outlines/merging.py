@@ -1,4 +1,4 @@
-"""Chosen parts of a source -> one outline: united, bridged, or their hull; or one outline for each piece."""
+"""Chosen parts of a source -> one outline: united, bridged, their hull; or each alone."""
 
 from __future__ import annotations
 
@@ -176,7 +176,7 @@ def _each(
     breadth: float,
     fill_holes: bool | None,
 ) -> Merged:
-    """Every piece of a region by itself, in the order of the parts; notes on the whole stand with the first.
+    """Every piece of a region, in the order of the parts; the first has the notes on all.
 
     Raises
     ------
@@ -197,7 +197,7 @@ def _each(
 
 
 def _told_apart(parts: Sequence[Part], name: str) -> list[str]:
-    """A name for the piece of each part, none of them twice: that of the part, or ``name`` of the source."""
+    """Different names for the pieces of parts: the part's own, or ``name`` of the source."""
     found: list[str] = []
     for part in parts:
         own = part.name if part.is_named else name

@@ -132,7 +132,7 @@ class Document:
 
     @property
     def parts(self) -> tuple[Document, ...]:
-        """All parts of the target as they were left, this one among them; only this one where it has no others."""
+        """All parts of the target as they were left, this one among them."""
         alone = replace(self, other_parts=(), part=0) if self.other_parts else self
         return (*self.other_parts[: self.part], alone, *self.other_parts[self.part :])
 

@@ -1,4 +1,4 @@
-"""The parts of a target of several separate pieces: each has sheets of its own, all to one scale.
+"""The parts of a target of several pieces: each has its sheets, all to one scale.
 
 One part is shown and edited; the others wait beside it with their designs.  What holds for all is asked for once: the
 settings of the shown part are those of every other, but for its grid, its size and its single connectors.
@@ -23,7 +23,7 @@ PlacedTarget = tuple[Outline, tuple[float, float] | None]
 
 
 def set_parts(document: Document, pieces: Sequence[PlacedTarget]) -> Edit:
-    """Take several targets to be designed beside each other, in the place of the present one; the first is shown.
+    """Take several targets beside each other in the place of the present one.
 
     They have the size that they were drawn with, if that is one in mm; else the largest is as large as its sheet makes
     it, and the others are to that scale.
@@ -80,7 +80,7 @@ def showing(document: Document, number: int) -> Document:
 
 
 def showing_target(document: Document, target: Outline) -> Document:
-    """The document with the part shown that has a target; as it is where that is shown, or none has it."""
+    """The document with the part shown that has a target; as it is where none has it."""
     if document.target == target:
         return document
     found = [number for number, part in enumerate(document.parts) if part.target == target]
@@ -97,7 +97,7 @@ def with_part(document: Document, number: int, part: Document) -> Document:
 
 
 def parts_as_cut(document: Document) -> tuple[Document, ...]:
-    """Every part as a project of its own, in order: as it was left, with the settings of now, all to one scale."""
+    """Every part as a project of its own, with the settings of now, all to one scale."""
     scale = scale_of(document)
     return tuple(
         part if number == document.part else _to_scale(part, document, scale)
@@ -106,7 +106,7 @@ def parts_as_cut(document: Document) -> tuple[Document, ...]:
 
 
 def scale_of(document: Document) -> float:
-    """Millimetres of the opened sheet for one unit of the drawing, by the part that is shown; 0 without a target."""
+    """Millimetres of the opened sheet for one unit of the drawing; 0 without a target."""
     size = size_of(document)
     return 0.0 if size is None or document.target is None else max(size.opened) / _drawn(document.target)
 

@@ -179,7 +179,7 @@ def checked(path: Path, document: Document | None = None) -> Checked:
 
 
 def _checked_sheets(report: FileReport, document: Document) -> Checked:
-    """Compare every sheet of a bed with its design, of whichever part, and judge all: the verdict is the worst."""
+    """Compare every sheet of a bed with its design; the verdict is that on the worst."""
     parts, unlike = parts_as_cut(document), tuple[Problem, ...]()
     requests: list[CutRequest] = []
     for sheet in report.sheets:

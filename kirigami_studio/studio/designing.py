@@ -48,6 +48,21 @@ from kirigami_studio.studio.cutting import least_feature_mm, room_mm
 if TYPE_CHECKING:
     from kirigami_studio.studio.as_cut import AsCut
 
+#: Notes on what keeps closed sheets from showing a target, by the families that there are designs of.
+_LIMITS = {
+    "covers.turns_back": {
+        frozenset[Family](): "covers.turns_back_ahead",
+        frozenset({Family.CLOSED}): "covers.turns_back_closed",
+        frozenset({Family.COVER}): "covers.turns_back_cover",
+        frozenset(Family): "covers.turns_back",
+    },
+    "covers.many_arms": {
+        frozenset[Family](): "covers.many_arms_ahead",
+        frozenset({Family.CLOSED}): "covers.many_arms_closed",
+        frozenset({Family.COVER}): "covers.many_arms_cover",
+        frozenset(Family): "covers.many_arms",
+    },
+}
 #: Target angles up to this are those of a closed sheet, radians.
 CLOSED = 1e-9
 #: Designs that are estimated as cut between two reports.
@@ -261,7 +276,7 @@ def why_covered(candidates: Sequence[Candidate], target: Outline | None, start: 
 
 
 def closed_limit(candidates: Sequence[Candidate], target: Outline | None, start: StartShape = RECTANGLE) -> Note | None:
-    """What no closed sheet shows of a target, whatever is fitted, with the most that each family of designs has found.
+    """Limit of closed sheets for a target, with the most that each family has found.
 
     Returns
     -------
@@ -275,15 +290,11 @@ def closed_limit(candidates: Sequence[Candidate], target: Outline | None, start:
         return None
     code, facts = limit
     best = _best_of_families(candidates)
-    if not best:
-        code += "_ahead"
-    elif len(best) < len(Family):
-        code += f"_{next(iter(best)).value}"
-    return Note.of(code, **facts, **_figures(best))
+    return Note.of(_LIMITS[code][frozenset(best)], **facts, **_figures(best))
 
 
 def limit_of(document: Document) -> Note | None:
-    """What is said beside the match of a project's designs: what closed sheets cannot show, or why there are covers.
+    """Note beside the match of a project's designs: the limit of closed sheets, or of covers.
 
     Pieces on pins are extended beyond their sheet, so what that cannot show says nothing of them.
     """
@@ -338,7 +349,7 @@ def _is_convex(start: StartShape) -> bool:
 
 @lru_cache(maxsize=64)
 def _limit(target: Outline, sides: float) -> tuple[str, Mapping[str, float]] | None:
-    """Code and facts of what keeps closed sheets of so many sides from showing a target; None where nothing does."""
+    """Code and facts of the limit of closed sheets of so many sides; None without one."""
     target = target.filled
     back = turn_back(target)
     if back.angle >= TURNS_BACK:

@@ -1,4 +1,4 @@
-"""A target of several parts: one sheet for each, designed and cut to one scale, all of them on the beds of one machine.
+"""A target of several parts: one sheet for each, to one scale, on beds of one machine.
 
 Parts that lie apart cannot be one mechanism: a sheet is rigid panels that hang together.  So each part has a sheet of
 its own.  Together they make one export: a cut file for each bed, with the chosen design of every part.
@@ -62,7 +62,7 @@ class PartSheet:
     as_cut: AsCut | str
 
     def judged(self, verifications: Sequence[Verification] = ()) -> Verdict:
-        """What is to be expected of it, with what was found in its files."""
+        """Its verdict, with what was found in its files."""
         return judged(self.request, self.made, self.as_cut, verifications)
 
 
@@ -99,7 +99,7 @@ def part_of(document: Document, words: str) -> Document:
 
 
 def with_settings(document: Document, settings: FabricationSettings) -> Document:
-    """The project cut by other settings; another width of the sheet that is shown is another scale for all."""
+    """The project cut by other settings; another width of the sheet is another scale."""
     changed = settings.width_mm != document.fabrication.width_mm
     return replace(document, fabrication=replace(settings, opened_mm=None) if changed else settings)
 
@@ -122,7 +122,7 @@ def part_requests(document: Document) -> tuple[CutRequest, ...]:
 def part_sheets(
     document: Document, known: Mapping[Candidate, AsCut | str] = FrozenMapping(), cancel: Cancel = never
 ) -> tuple[PartSheet, ...]:
-    """Plan the sheet of every part, and close those on their connectors of which nobody knows how they do.
+    """Plan the sheet of every part, and close those of which nothing is ``known``.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def worst_of(verdicts: Sequence[Verdict]) -> Verdict:
 
 
 def writes_parts(document: Document | None, output: Output) -> bool:
-    """Whether an output holds all parts of a project: cut files do where there are several; pictures show one."""
+    """Whether an output holds all parts of a project: cut files do, pictures show one."""
     if document is None or not document.other_parts:
         return False
     from kirigami_studio.export.bed_files import KINDS
@@ -162,7 +162,7 @@ def writes_parts(document: Document | None, output: Output) -> bool:
 
 
 def placed_layouts(document: Document) -> list[PlacedLayout]:
-    """The opened sheets of all parts, each in its place in the drawing, for pictures of the whole.
+    """The opened sheets of all parts, each in its place, for pictures of the whole.
 
     Raises
     ------
@@ -188,7 +188,7 @@ def exporting_parts(
     cancel: Cancel,
     known: Mapping[Candidate, AsCut | str] = FrozenMapping(),
 ) -> Iterator[ExportedFiles | ManyPages]:
-    """Write the chosen designs of all parts of a project: a cut file for each bed; pieces and tiles by part in folders.
+    """Write the chosen designs of all parts: a cut file for each bed; pieces in folders.
 
     A PDF of many pages is written only where ``many_pages`` are wanted.  What is ``known`` of designs as cut is not
     found out again.
@@ -214,7 +214,7 @@ def exporting_parts(
 def exporting_all(
     request: CutRequest, output: Output, many_pages: bool, cancel: Cancel
 ) -> Iterator[ExportedFiles | ManyPages]:
-    """Write what is asked for of a design, or of all parts of its project where its files hold them."""
+    """Write files of a design, or of all parts of its project where the files hold them."""
     document = request.document
     if document is not None and writes_parts(document, output):
         known = {} if request.as_cut is None else {request.candidate: request.as_cut}
@@ -252,7 +252,7 @@ def _copies(document: Document) -> int:
 def written_parts(
     document: Document, sheets: Sequence[PartSheet], beds: Sequence[SheetBed], output: Output, cancel: Cancel = never
 ) -> ExportedFiles:
-    """Write the sheets of all parts, read them back, and judge each; nothing appears that was not verified.
+    """Write the sheets of all parts, read them back, and judge each.
 
     Raises
     ------
@@ -319,7 +319,7 @@ def _part_of(sheet: PartSheet, verified: tuple[Verification, ...], output: Outpu
 
 
 def _layers_written(document: Document, requests: Sequence[CutRequest], output: Output) -> ExportedFiles:
-    """Write the folders of designs that are made of pieces or tiles, one for each part in the folder of all."""
+    """Write a folder for each part of designs that are made of pieces or tiles."""
     home = output.path if output.name is not None else output.path.with_suffix("")
     used: set[str] = set()
     parts = []

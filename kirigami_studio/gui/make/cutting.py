@@ -313,7 +313,7 @@ def message_of(path: Path, made: Planned, verdict: Verdict | None) -> Message:
 
 
 def message_of_parts(path: Path, exported: ExportedFiles) -> Message:
-    """Say what the files of all parts hold, and whether cutting them would succeed: by the part that does worst."""
+    """Say what the files of all parts hold; the part that does worst decides."""
     name = tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name
     lines = [str(path)]
     for part in exported.parts:

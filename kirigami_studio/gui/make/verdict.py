@@ -121,7 +121,7 @@ class VerdictKeeper(QObject):
         self._start(tr("trying fixes"), request, verdict, steps)
 
     def take_export(self, exported: ExportedFiles) -> None:
-        """Files were written and read back: the verdict answers for them, too; of several parts that of the shown."""
+        """Take the verdict with the files that were read back; of several parts the shown one."""
         if exported.parts:
             for part in exported.parts:
                 if self._planned is None or part.planned is None or part.planned.plan is self._planned[1].plan:

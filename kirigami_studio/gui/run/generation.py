@@ -125,7 +125,7 @@ class Generation(QObject):
         self._go_on()
 
     def _go_on(self) -> None:
-        """Show the next part of the target that waits for designs, and start its run; in the end the first again."""
+        """Show the next part that waits for designs and start its run; in the end the first."""
         session = self._session
         if not session.document.other_parts:
             return

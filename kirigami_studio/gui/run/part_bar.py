@@ -1,4 +1,4 @@
-"""The parts of a target of several separate pieces: which one is shown, and how far each has come."""
+"""The parts of a target of several pieces: which one is shown, and how far each is."""
 
 from __future__ import annotations
 

@@ -284,7 +284,7 @@ class TargetPanel(Card):
         self.start_refusal.setVisible(bool(sentence))
 
     def show_limit(self, sentence: str) -> None:
-        """Say what no closed sheet shows of the target, with the most that was found; "" for nothing."""
+        """Say what no closed sheet shows of the target; "" for nothing."""
         self.limit.setText(sentence)
         self.limit.setToolTip(sentence)
         self.limit.setVisible(bool(sentence))
