@@ -495,7 +495,7 @@ class Design:
             ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for designs in layers in a folder of this name;
             ``.stl``, ``.3mf`` or ``.obj``: solids, on printed pins in a folder of this name; ``.png``: the closed
             sheet; ``.gif``: its motion; ``.html``: a page to share; ``.fold``,
-            ``.xml`` (MuJoCo), ``.csv``: its parts and hinges.
+            ``.xml`` (MuJoCo), ``.csv``: its parts and hinges; ``.inp``: its finite elements.
 
         Returns
         -------

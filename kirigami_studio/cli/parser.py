@@ -205,7 +205,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("export", "write a project as a cut file or picture", "fabrication:export", (
         option("project", help="a .kiri project"),
         option("--out", required=True,
-               help="file to write (.dxf .svg .pdf .lbrn2 .png .gif .html .stl .3mf .obj .fold .xml .csv); with "
+               help="file to write (.dxf .svg .pdf .lbrn2 .png .gif .html .stl .3mf .obj .fold .xml .inp .csv); with "
                     "--all, a folder"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
         option("--part", type=name, default=None, metavar="NAME",

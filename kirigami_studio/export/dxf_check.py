@@ -53,8 +53,8 @@ from kirigami_studio.foundation.plain_text import plain_line
 #: A length of the box round a sheet, mm.
 BOX_NUMBER = re.compile(r"\d{1,4}\.\d{4}", re.ASCII)
 #: Kinds of file that an export has beside cut files.
-NO_CUT_FILES = frozenset(
-    {".pdf", ".png", ".gif", ".html", ".json", ".kiri", ".csv", ".txt", ".3mf", ".stl", ".obj", ".fold", ".xml"}
+NO_CUT_FILES = frozenset({".pdf", ".png", ".gif", ".html", ".json", ".kiri", ".csv", ".txt"}) | frozenset(
+    {".3mf", ".stl", ".obj", ".fold", ".xml", ".inp", ".geo"}
 )
 #: A tab may differ from the width that the file promises by this much (mm).
 TAB_TOLERANCE_MM = 1e-3

@@ -189,6 +189,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "written. Please report it."
     ),
     "linkage.not_as_written": mark("{name} did not read back as it was written. Write it again, or to another place."),
+    "elements.in_pieces": mark(
+        "The finished sheet falls into {pieces} pieces, and a finite element model is of one. Mend the cut plan first."
+    ),
     "linkage.apart": mark("Only {together} of {parts} parts hang together by hinges. Trim less, then write the model."),
     "page.not_as_written": mark(
         "The page did not read back as planned: {name:.40}. Nothing was written. Please report it."
