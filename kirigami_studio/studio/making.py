@@ -35,6 +35,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
+from kirigami_studio.project.sheet_size import sized
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     hold_options,
@@ -154,6 +155,10 @@ class ExportedFiles:
     verdict: Verdict | None = None  #: On the sheet that a cut file holds; coupons and pictures have none
     files: tuple[Path, ...] = ()  #: All of them, in the order of writing
     pieces: MadePieces | None = None  #: Of a pinned design, which has no plan
+    #: Of a target of several parts, what was written of each; all else is of all of them, the verdict the worst.
+    parts: tuple[ExportedFiles, ...] = ()
+    part: str = ""  #: Name of the part that this is of; "" for the whole
+    work: Work | None = None  #: Length and time of all cuts of the sheets of several parts
 
     @property
     def ok(self) -> bool:
@@ -255,7 +260,7 @@ def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | 
     first: KirigamiError | None = None
     planned_at_least: Document | None = None
     for number in range(document.chosen or 0, len(document.candidates)):
-        chosen = replace(document, chosen=number)
+        chosen = sized(replace(document, chosen=number))
         request = CutRequest.of(chosen)
         try:
             made = pieces_of(request) if request.is_pinned else planned(request)
@@ -926,7 +931,7 @@ def exporting(
             return
     made = planned(request, cancel)
     size, paper = made.plan.copies.spread_mm, request.settings.paper
-    if output.has_pdf and not many_pages and (many := _many_pages(size, paper)):
+    if output.has_pdf and not many_pages and (many := many_pages_of(size, paper)):
         yield many
         return
 
@@ -942,7 +947,7 @@ def exporting(
     yield found
 
 
-def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
+def many_pages_of(size: tuple[float, float], paper: str) -> ManyPages | None:
     """Warning before a PDF (width, height; mm) of many pages is written; None for few."""
     from kirigami_studio.export.paper import page_notes, tile
 
@@ -964,7 +969,7 @@ def exporting_artwork(
         raise ProjectError("artwork.none")
     job, beds = printed_parts(request, cancel)
     works = [ArtworkJob.usual(request.artwork, job, bed) for bed in beds]
-    pages = [_many_pages(work.page_mm, request.settings.paper) for work in works]
+    pages = [many_pages_of(work.page_mm, request.settings.paper) for work in works]
     if not many_pages and any(pages):
         yield max(filter(None, pages), key=lambda many: many.pages)
         return
