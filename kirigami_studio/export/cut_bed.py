@@ -122,7 +122,7 @@ def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> lis
     if by_mm == 0.0:
         return [ring]
     asked = Polygon(ring)
-    area = shapely.buffer(asked, by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
+    area: BaseGeometry = shapely.buffer(asked, by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
     least = closed_by(asked, by_mm)
     if farthest(area.buffer(-by_mm, quad_segs=beam_chords(by_mm)), least) > SHARP_MM:
         area = _with_fewer_corners(shapely.buffer(asked, by_mm, quad_segs=beam_chords(by_mm)), asked, by_mm)
