@@ -184,9 +184,11 @@ class Canvas(QWidget):
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = painter_on(self)
-        self._paint_background(painter)
-        self._paint_content(painter)
-        painter.end()
+        try:
+            self._paint_background(painter)
+            self._paint_content(painter)
+        finally:  # Qt crashes over a widget whose painter was left open by an error
+            painter.end()
 
     # drawing -------------------------------------------------------------------------------------------------------
 
