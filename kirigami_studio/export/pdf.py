@@ -64,12 +64,26 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = Paper.NONE) -> None:
     ExportError
         Unknown paper, too many pages, an unwritable place, or a file that did not read back.
     """
+    tiling = pages_of(plan, paper)
+    content = _pdf_bytes(plan, tiling)
+    write_atomically(Path(path), content, lambda written: _verify(written, plan, tiling))
+
+
+def pages_of(plan: CutPlan, paper: str) -> Tiling:
+    """Lay a plan over pages of a paper, or on one page as large as it for "none"; raises as :func:`write_pdf` does."""
+    return one_page(plan) if find_paper(paper) is None else tile(plan.copies.spread_mm, paper)
+
+
+def draw_plan(canvas: Any, plan: CutPlan, tiling: Tiling) -> None:
+    """Draw all pages of a plan at 1:1 on a canvas of reportlab, or on one with the same methods."""
     names = [(stroke.points, False, picture.NAME_COLOUR) for stroke in name_strokes(plan, find_profile("any"))]
     cuts = [(cut.flattened, cut.closed, picture.LAYER_COLOUR[cut.layer]) for cut in plan.copies.of(plan.paths)]
-    lines = [*names, *cuts]
-    tiling = one_page(plan) if find_paper(paper) is None else tile(plan.copies.spread_mm, paper)
-    content = _pdf_bytes(plan, lines, tiling)
-    write_atomically(Path(path), content, lambda written: _verify(written, plan, tiling))
+    lines: list[Line] = [*names, *cuts]
+    about = f"Sheet {plan.size_mm[0]:.1f} x {plan.size_mm[1]:.1f} mm, connectors {plan.connector_mm:g} mm"
+    about += f", {len(plan.copies)} copies" if len(plan.copies) > 1 else ""
+    whole = len(tiling.tiles) == 1
+    canvas.setLineCap(1)
+    draw_pages(canvas, tiling, plan.copies.spread_mm, about, lambda part: _draw_lines(canvas, lines, part, whole=whole))
 
 
 def page_size_mm(plan: CutPlan) -> tuple[float, float]:
@@ -84,7 +98,7 @@ def one_page(plan: CutPlan) -> Tiling:
     return Tiling(page_size_mm(plan), 1, 1, (Tile(0, 0, (0.0, 0.0, *plan.copies.spread_mm), everything),))
 
 
-def _pdf_bytes(plan: CutPlan, lines: Sequence[Line], tiling: Tiling) -> bytes:
+def _pdf_bytes(plan: CutPlan, tiling: Tiling) -> bytes:
     stream = BytesIO()
     # reportlab carries no types; invariant: the same plan gives the same bytes.
     make_canvas: Any = Canvas
@@ -92,11 +106,7 @@ def _pdf_bytes(plan: CutPlan, lines: Sequence[Line], tiling: Tiling) -> bytes:
     canvas.setTitle(f"Kirigami cut plan {plan.design_hash}")
     canvas.setCreator(f"Kirigami Studio {__version__}")
     canvas.setSubject("; ".join(f"{name} {text}" for name, text in facts_of(plan, find_profile("any")).items()))
-    canvas.setLineCap(1)
-    about = f"Sheet {plan.size_mm[0]:.1f} x {plan.size_mm[1]:.1f} mm, connectors {plan.connector_mm:g} mm"
-    about += f", {len(plan.copies)} copies" if len(plan.copies) > 1 else ""
-    whole = len(tiling.tiles) == 1
-    draw_pages(canvas, tiling, plan.copies.spread_mm, about, lambda part: _draw_lines(canvas, lines, part, whole=whole))
+    draw_plan(canvas, plan, tiling)
     canvas.save()
     content: bytes = stream.getvalue()
     return content

@@ -160,6 +160,7 @@ class MainWindow(QMainWindow):
                 show_library=dialogs.show_library,
                 show_pairs=presenters.show_pairs,
                 export_artwork=dialogs.export_artwork,
+                show_print=dialogs.show_print,
                 close=self.close,
             ),
             *edit_commands.commands(project, targeting, dialogs, self.pasting, self.picturing),
