@@ -20,7 +20,7 @@ from kirigami_studio.gui.make.cut_view import CutOverlay
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks
 from kirigami_studio.gui.widgets.fitted_text import BRIEF, CONTROLS, TOOLTIP_LINE, wrapped
-from kirigami_studio.gui.widgets.number_field import LengthField
+from kirigami_studio.gui.widgets.readable import ShownUnit
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -267,7 +267,7 @@ def test_that_no_menu_is_higher_than_a_small_screen(designed: MainWindow) -> Non
 def millimetres_afterwards() -> Iterator[None]:
     """Show millimetres in the windows of other tests."""
     yield
-    LengthField.assumed = ""
+    ShownUnit.inches = False
 
 
 @pytest.mark.usefixtures("millimetres_afterwards")

@@ -113,6 +113,7 @@ class MainWindow(QMainWindow):
         self._refresh_commands()
         self._build_toolbar()
         self.messages.content_changed.connect(self._place_messages)
+        self.appearance.unit_changed.connect(self._show_unit)
         self.welcome.offer(self.commands.actions)
         self.appearance.changed.connect(self.commands.set_palette)
         self.appearance.set_theme(palette)
@@ -261,6 +262,12 @@ class MainWindow(QMainWindow):
             event.ignore()
             return True
         return super().eventFilter(watched, event)
+
+    def _show_unit(self) -> None:
+        """Write all lengths in the unit that was switched to."""
+        self.presenters.show_unit()
+        for part in self.findChildren(QWidget):
+            part.update()
 
     def _place_messages(self) -> None:
         """Messages lie where the project's name is, between the buttons of the tool bar."""

@@ -326,6 +326,11 @@ class Presenters(QObject):
         pages.turn(WindowPage.DESIGN)
         pages.stage.player.play.setChecked(False)
 
+    def show_unit(self) -> None:
+        """Lengths are shown in another unit: write them all again."""
+        self._show_document(self._services.session.document)
+        self.making.show_unit()
+
     def refit(self, on: bool) -> None:
         """Fit the chosen design again, or stop fitting."""
         chosen = self._services.chosen

@@ -27,8 +27,8 @@ from kirigami_studio.project import edits
 SMALL, LARGE = QSize(1280, 720), QSize(1920, 1080)
 #: Designs and steps of the run that is pictured while it goes on.
 RUN = {"k": 6, "polish": 30, "auto_grid": False, "grid": (8, 8)}
-#: Width (mm) of connectors that no panel has room for.
-TOO_WIDE = 15.0
+#: Width (mm) of a cut that leaves no panel.
+TOO_WIDE = 4.0
 
 
 class PageStates(OffscreenSession):
@@ -111,10 +111,10 @@ class PageStates(OffscreenSession):
         self.until(window.fabrication.export.isEnabled, "undo did not bring the plan back")
 
     def refused(self) -> None:
-        """With connectors that the sheet has no room for, and an error of a file."""
+        """With cuts that leave no panel, and an error of a file."""
         window = self.window
-        window.services.fabrication.change(connector_mm=TOO_WIDE)
-        self.until(lambda: not window.fabrication.export.isEnabled(), "the wide connector was not refused")
+        window.services.fabrication.change(kerf_mm=TOO_WIDE)
+        self.until(lambda: not window.fabrication.export.isEnabled(), "the wide kerf was not refused")
         sentence = "logo.svg crosses itself at (12.4, 88.1) mm; separate the two loops there and open it again."
         window.messages.add(Message(sentence, Tone.ERROR, "first line of the trace"))
         self.pages("refused")
