@@ -14,6 +14,7 @@ from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import fitted
+from kirigami_studio.gui.widgets.layouts import TOUCH
 from kirigami_studio.gui.widgets.paths import blank, ink, painter_on
 from kirigami_studio.gui.widgets.readable import ShownUnit, readable_size
 from kirigami_studio.gui.widgets.target_items import paint_start_shape
@@ -43,7 +44,7 @@ OTHER_STARTS = (
 )
 WIDTH = 108
 #: Edge of the button that goes back to the rectangle, and of the pictures in the menu, pixels.
-BACK_EDGE, MENU_EDGE = 20, 22
+BACK_EDGE, MENU_EDGE = TOUCH, 22
 #: Pixels around the picture, and that a line of text takes.
 MARGIN, LINE = 9.0, 17.0
 TIP = mark("Start as: the flat sheet. Click to change it, or drop a file here.")
@@ -151,7 +152,7 @@ class StartTile(QAbstractButton):
     def set_palette(self, palette: Palette) -> None:
         self._palette = palette
         self.back.setIcon(icons.icon("close", palette))
-        self.back.setIconSize(QSize(BACK_EDGE - 8, BACK_EDGE - 8))
+        self.back.setIconSize(QSize(BACK_EDGE - 20, BACK_EDGE - 20))
         for name, _, _ in STARTS:
             self.entries[name].setIcon(QIcon())  # drawn again when the menu opens
         self.update()

@@ -15,7 +15,7 @@ from kirigami_studio.gui.target.arrangements import EVERY
 from kirigami_studio.gui.target.drawing_tool_bar import DrawingToolBar, LooseRow
 from kirigami_studio.gui.target.target_view import TargetView, Tool
 from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton, compact
-from kirigami_studio.gui.widgets.layouts import Part, label, push_button, row, slider
+from kirigami_studio.gui.widgets.layouts import TOUCH, Part, label, push_button, row, slider
 from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field, names_length
 from kirigami_studio.gui.widgets.readable import TIMES, readable_size
 from kirigami_studio.outlines.outline import Outline
@@ -44,7 +44,7 @@ class OpenedSizeRow(QWidget):
         self.caption = label(tr("&Opened size"), self.width_)
         self.caption.setMinimumWidth(self.caption.sizeHint().width())
         self.drawn = ToolButton("drawnSize", "chain", tr("Back to the drawn size."))
-        self.drawn.setFixedSize(29, 29)
+        self.drawn.setFixedSize(TOUCH, TOUCH)
         self.unit = label(tr("mm"))
         names_length(self.unit)
         sides = ((self.width_, 1), label(TIMES), (self.height_, 1), self.unit)

@@ -209,7 +209,7 @@ def commands(
         ),
         sheet(
             "print",
-            tr("P&rint …"),
+            tr("Print …"),
             tr("Print the cut sheet at true size, or see its pages"),
             show_print,
             "Ctrl+P",

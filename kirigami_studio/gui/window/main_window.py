@@ -14,6 +14,7 @@ from kirigami_studio.gui.session.command import Command, Switch, WindowState
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.widgets.actions import CommandActions
+from kirigami_studio.gui.widgets.canvas import name_roles
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import BriefTooltips
@@ -76,6 +77,7 @@ class MainWindow(QMainWindow):
         self.setCentralWidget(pages)
         self._build_status()
         leave_wheel(self)
+        name_roles()
         BriefTooltips(self)
         for box in self.findChildren(QAbstractSpinBox):
             box.installEventFilter(self)
