@@ -47,6 +47,12 @@ class PanelTable:
     #: (E, 4); nodes that may rest on the side after each corner, from beyond the slit there; -1 at the sheet's edge
     guests: IntArray
 
+    def at(self, places: IntArray | BoolArray, hinged: BoolArray) -> PanelTable:
+        """Panels of some places, with other shared corners (E, 4)."""
+        return PanelTable(
+            self.index[places], self.corners[places], hinged[places], self.even[places], self.guests[places]
+        )
+
 
 @cache
 def all_panels(rows: int, columns: int) -> PanelTable:
@@ -62,7 +68,7 @@ def edge_panels(rows: int, columns: int) -> PanelTable:
     """The (cached) panels along the edge of an m x n grid."""
     every = all_panels(rows, columns)
     index = np.flatnonzero(~every.hinged.all(axis=1))
-    return PanelTable(index, every.corners[index], every.hinged[index], every.even[index], every.guests[index])
+    return every.at(index, every.hinged)
 
 
 def _guests(rows: int, columns: int) -> IntArray:
