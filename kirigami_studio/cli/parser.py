@@ -284,11 +284,15 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), ("kirigami-studio animate heart.kiri --out heart.gif",
         "kirigami-studio animate heart.kiri --out heart-as-cut.gif --as-cut --material card-co2")),
-    SubCommand("artwork", "print a picture on the sheet, in register with its cuts", "artwork:artwork", (
+    SubCommand("artwork", "print a picture on the sheet or its pieces, in register with the cuts", "artwork:artwork", (
         option("project", help="a .kiri project"),
         option("--picture", default=None, help="PNG, JPG, BMP, TIFF, WebP or SVG (default: the project's artwork)"),
         option("--out", required=True,
-               help="folder for artwork.svg, artwork.pdf, artwork.png (the flat sheet) and artwork_opened.png"),
+               help="folder for artwork.svg, artwork.pdf, artwork.png (the flat sheet; of pieces one set for each bed, "
+                    "artwork-layer-1.svg and so on) and artwork_opened.png"),
+        option("--keep", action="store_true",
+               help="keep the picture in the project: cut files of pieces then have the lines of an SVG on a layer "
+                    "ARTWORK"),
         option("--on", choices=("target", "flat"), default=None,
                help="where the picture is seen whole: on the opened sheet or on the flat one (default: the project's, "
                     "or target)"),

@@ -34,7 +34,7 @@ from kirigami_studio.export.file_content import MILLIMETRES
 from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRecord, piece_record_of, record_of
 from kirigami_studio.export.layer_files import MARK_GAP_MM, REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
-from kirigami_studio.export.profile import NAME_LAYER
+from kirigami_studio.export.profile import ARTWORK_LAYER, NAME_LAYER
 from kirigami_studio.export.provenance import AROUND, BOX, PLACE, PROGRAM, SHEETS, SLOT_KERF, THROUGH
 from kirigami_studio.export.sheet_bed import place_of_text
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
@@ -64,6 +64,8 @@ REACH_MM = 1.0
 TOUCH_MM = 1e-3
 #: Machine programs choose the operation by these words in a layer's name (MeerK40t, K40 Whisperer).
 TRAP_WORDS = ("CUT", "ENGRAVE")
+#: What a file says of the numbers of its engraved lines, and their layers.
+ENGRAVED_FACTS = {"ENGRAVED_LINES": NAME_LAYER, "ARTWORK_LINES": ARTWORK_LAYER}
 #: Ends nearer than this (mm) count as the same point.
 SAME_POINT_MM = 1e-4
 #: Closed cuts that are wider than this (mm) are no slots.
@@ -358,17 +360,21 @@ def _without_marks(content: DxfContent) -> DxfContent:
 
 
 def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> DxfContent:
-    """The cuts alone of a file that engraves a name in so many lines.
+    """The cuts alone of a file that engraves a name, or artwork, in so many lines.
 
     Of files for single layers one holds all of the name, and the others nothing of it.
     """
-    promised = content.facts.get("ENGRAVED_LINES")
-    if promised is None:
+    promised = {layer: content.facts.get(fact) for fact, layer in ENGRAVED_FACTS.items()}
+    if not any(promised.values()):
         return content
-    names = [path for path in content.paths if path.layer == NAME_LAYER]
-    cuts = [path for path in content.paths if path.layer != NAME_LAYER]
-    if f"{len(names)}" != promised and (names or "PART" not in content.facts):
-        problems.append(Problem.error("cut_file.name_differs", promised=promised, layer=NAME_LAYER, count=len(names)))
+    engraved = frozenset(layer for layer, count in promised.items() if count)
+    cuts = [path for path in content.paths if path.layer not in engraved]
+    for layer in sorted(engraved):
+        count = sum(path.layer == layer for path in content.paths)
+        if f"{count}" != promised[layer] and (count or "PART" not in content.facts):
+            problems.append(Problem.error("cut_file.name_differs", promised=promised[layer], layer=layer, count=count))
+    # Lines of artwork may end at the edge of a piece.
+    names = [path for path in content.paths if path.layer == NAME_LAYER and NAME_LAYER in engraved]
     if names and cuts:
         clear = nearest_cut([path.points for path in names], [path.points for path in cuts])
         if clear.distance_mm < kerf:

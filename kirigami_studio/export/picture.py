@@ -247,7 +247,10 @@ def draw_pieces(pieces: PosedPieces, phi: float, frame: PictureFrame, target: Sh
     for loop in loops:
         ImageDraw.Draw(image).polygon(loop, fill=TARGET_FILL if loop is loops[0] else PAPER)
     fall = max(pieces.shadow * frame.scale, 1.0) * factor
-    shown = [[frame.pixel(ring, factor) for ring in rings] for rings in pieces.rings(phi)]
+    shown, drawn = (
+        [[frame.pixel(line, factor) for line in lines] for lines in found]
+        for found in (pieces.rings(phi), pieces.drawn(phi))
+    )
     for place, layer in enumerate(pieces.layers):
         mask = Image.new("L", size, 0)
         draw = ImageDraw.Draw(mask)
@@ -258,6 +261,8 @@ def draw_pieces(pieces: PosedPieces, phi: float, frame: PictureFrame, target: Sh
         draw = ImageDraw.Draw(image)
         for ring in (ring for number in layer for ring in shown[number]):
             draw.line([*ring, ring[0]], fill=look.line, width=factor)
+        for line in (line for number in layer for line in drawn[number]):
+            draw.line(line, fill=look.number, width=factor, joint="curve")
     heads = frame.pixel(pieces.heads(phi), factor)
     radius = max(0.5 * pieces.head_mm / pieces.mm_per_world * frame.scale, 0.7) * factor
     if heads:

@@ -16,7 +16,7 @@ from kirigami_studio.export import picture
 from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import PlacedLayout, drawn_panels, hexadecimal
-from kirigami_studio.export.profile import BLUE, CYAN, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
+from kirigami_studio.export.profile import BLUE, CYAN, GREEN, MAGENTA, MM_DPI, ORANGE, RED, WHITE, Profile, find_profile
 from kirigami_studio.export.provenance import PROGRAM, facts_of, origin_facts
 from kirigami_studio.export.strokes import Stroke, extent, file_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
@@ -44,6 +44,7 @@ ACI_COLOUR = {
     BLUE: (0, 0, 255),
     MAGENTA: (255, 0, 255),
     WHITE: (0, 0, 0),
+    ORANGE: (255, 128, 0),
 }
 
 
@@ -205,7 +206,9 @@ def _layout_shapes(part: PlacedLayout) -> dict[str, list[list[FloatArray]]]:
 def _write_pieces_svg(job: ExportJob, pieces: PosedPieces, path: Path) -> None:
     """Draw pieces layer by layer over the target, at their own size."""
     phi, scale, look = job.shown_phi, pieces.mm_per_world, pieces.look
-    rings = [[ring * scale for ring in shape] for shape in pieces.simplified(FINE).rings(phi)]
+    coarse = pieces.simplified(FINE)
+    rings = [[ring * scale for ring in shape] for shape in coarse.rings(phi)]
+    drawn = [[line * scale for line in lines] for lines in coarse.drawn(phi)]
     target = [np.asarray(ring, dtype=np.float64) * scale for ring in as_rings(job.target)]
     everything = np.concatenate([*(shape[0] for shape in rings), *target])
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
@@ -218,6 +221,8 @@ def _write_pieces_svg(job: ExportJob, pieces: PosedPieces, path: Path) -> None:
         edges = [_band(np.concatenate([ring, ring[:1]]), EDGE_MM) for shape in shapes for ring in shape]
         groups.append((f"LAYER_{place}", look.layer(place - 1, len(pieces.layers)), shapes))
         groups.append((f"EDGES_{place}", look.line, edges))
+        lines = [_band(line, EDGE_MM) for number in layer for line in drawn[number]]
+        groups += [(f"ARTWORK_{place}", look.number, lines)] if lines else []
     heads = pieces.heads(phi) * scale
     for name, colour, share in (("HEAD_RIMS", shaded(look.head, HEAD_RIM), 1.0), ("HEADS", look.head, 0.8)):
         discs = [shapely.Point(head).buffer(0.5 * share * pieces.head_mm, quad_segs=6) for head in heads]

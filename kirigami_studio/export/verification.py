@@ -34,6 +34,7 @@ from kirigami_studio.export.strokes import (
     name_strokes,
     sheet_strokes,
     strokes_of,
+    total_length,
     work_of,
 )
 from kirigami_studio.export.svg_reading import LARGEST_FILE, read_with_svgelements, read_with_xml
@@ -436,7 +437,7 @@ def _point_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format
 
 
 def _length_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format) -> Finding:
-    points, planned = sum(len(stroke.points) for stroke in strokes), sum(stroke.length for stroke in strokes)
+    points, planned = sum(len(stroke.points) for stroke in strokes), total_length(strokes)
     right = abs(content.length - planned) <= kind.shift_mm * max(points, 1)
     # Rounded as they are shown, so that readers that agree in print agree.
     return Finding.judged(right, "verify.length", length_mm=round(content.length, 3), planned_mm=round(planned, 3))

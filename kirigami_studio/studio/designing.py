@@ -16,6 +16,7 @@ import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate, Family
 from kirigami_studio.evaluate.posed_design import trimmed_parts
+from kirigami_studio.evaluate.trimming import HOLE_KEEP, KEEP
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
@@ -43,7 +44,7 @@ from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings, material_for, pin_gap_mm
 from kirigami_studio.settings.layers import hinge_layer
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cutting import least_feature_mm, room_mm
+from kirigami_studio.studio.cutting import least_feature_mm, room_mm, span_mm
 
 if TYPE_CHECKING:
     from kirigami_studio.studio.as_cut import AsCut
@@ -142,6 +143,8 @@ class StartChosen:
     reason: str
 
 
+#: How often other designs are trimmed, where none that is trimmed can be cut.
+TRIMMED_FURTHER = 2
 #: What a run reports.
 RunReport = Event | ModelFound | GridChosen | StartChosen | Decoded
 #: What fitting designs again reports.
@@ -173,9 +176,6 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
-    gap_mm = pin_gap_mm(cut)
-    if gap_mm and target.holes:
-        raise FabricationError("pinned.target_has_holes", count=len(target.holes))
     return Request.of(
         target,
         wanted,
@@ -184,7 +184,8 @@ def request_for(
         width_mm=cut.width_mm,
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
         room_mm=sizes_of(cut)[1],
-        least_gap_mm=gap_mm,
+        span_mm=_span_of(cut),
+        least_gap_mm=pin_gap_mm(cut),
     )
 
 
@@ -223,7 +224,7 @@ def run_design(
     Cancelled
         ``cancel`` returned true.
     """
-    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, with_grid
+    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, trimmed_further, with_grid
 
     if request.start.is_auto and request.near is None:
         chosen = start_choice(request)
@@ -243,7 +244,20 @@ def run_design(
             new = distinct(result.candidates, beside)
             result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
         result = yield from ranked_as_cut(result, cut, beside, cancel)
+        for _ in range(TRIMMED_FURTHER):
+            if not wants_other_trims(result):
+                break
+            result = yield from trimmed_further(result, cancel, pool)
+            result = yield from ranked_as_cut(result, cut, beside, cancel)
         yield Finished(result)
+
+
+def wants_other_trims(result: Result) -> bool:
+    """Whether designs are to be trimmed that are not yet, as none of those that are can be cut."""
+    asked = result.request.trims and result.request.budget_seconds is None
+    trimmed = [one for one in result.candidates if one.trim is not None]
+    feasible = any(one.trim is None and one.score.feasible for one in result.candidates)
+    return asked and bool(trimmed) and feasible and all(one in result.refusals for one in trimmed)
 
 
 def why_untrimmed(result: Result) -> Note | None:
@@ -429,7 +443,8 @@ def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: floa
     cut = hinge_layer(cut)
     widths = (cut.width_mm, cut.connector_mm, cut.kerf_mm)
     try:
-        return replace(request, keep=keep_for_connectors(request.uniform, material_for(cut), *widths))
+        least = least_keep(request.target)
+        return replace(request, keep=keep_for_connectors(request.uniform, material_for(cut), *widths, least))
     except FabricationError:
         if request.trims:
             raise
@@ -552,7 +567,7 @@ def refitting(
         target,
         wanted.prefer,
         locked,
-        partial(keep_for, candidate, settings),
+        partial(keep_for, candidate, target, settings),
         cancel,
         regular=wanted.regular,
         free_rim=wanted.rim == "free",
@@ -560,6 +575,7 @@ def refitting(
         least_feature_mm=least_mm,
         room_mm=room_mm,
         least_gap_mm=gap_of(settings),
+        span_mm=_span_of(settings),
     )
     untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
     yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
@@ -591,12 +607,13 @@ def fitting_again(
 
 def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
     """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
-    from kirigami_studio.pipeline.redesign import trimmed
+    from kirigami_studio.pipeline.redesign import Room, trimmed
     from kirigami_studio.polish.panel_size import least_in_cells
 
     least_mm, _ = sizes_of(settings)
     least = least_in_cells(least_mm, settings.width_mm, candidate.score.evenness.width)
-    found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least)
+    room = Room(settings.width_mm, _span_of(settings))
+    found = trimmed(candidate, target, keep_for(candidate, target, settings), cancel, least_panel=least, room=room)
     if cancel():
         raise Cancelled("trim.stopped")
     yield decoded(found.candidate)
@@ -613,6 +630,14 @@ def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
         return 0.0, 0.0
 
 
+def _span_of(settings: FabricationSettings) -> float:
+    """Width of a connector and of the cut that sheets leave room for; 0 without, and for an unknown material."""
+    try:
+        return 0.0 if pin_gap_mm(settings) else span_mm(settings)
+    except KirigamiError:
+        return 0.0
+
+
 def gap_of(settings: FabricationSettings) -> float:
     """Distance, mm, that pins keep; 0 without pins, and for an unknown material."""
     try:
@@ -621,9 +646,15 @@ def gap_of(settings: FabricationSettings) -> float:
         return 0.0
 
 
-def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
+def least_keep(target: Outline) -> float:
+    """Depth (unit cells) of the material that stays at hinges of a trimmed sheet whatever its connectors are."""
+    return HOLE_KEEP if target.holes else KEEP
+
+
+def keep_for(candidate: Candidate, target: Outline, settings: FabricationSettings) -> float:
     """Depth (unit cells) of the material that trimming has to leave at the hinges of a candidate."""
     from kirigami_studio.pipeline.redesign import keep_for_connectors
 
     sheet, cut = candidate.sheet, hinge_layer(settings)
-    return keep_for_connectors(sheet, material_for(cut), cut.width_mm, cut.connector_mm, cut.kerf_mm)
+    widths = cut.width_mm, cut.connector_mm, cut.kerf_mm
+    return keep_for_connectors(sheet, material_for(cut), *widths, least_keep(target))

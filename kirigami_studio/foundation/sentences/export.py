@@ -88,8 +88,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "artwork.impossible_margin": mark("The margin must be 0 to {most:g} mm, got {margin_mm:g} mm."),
     "artwork.impossible_dpi": mark("The resolution must be above 0 dpi, got {dpi:g}."),
     "artwork.name_a_picture": mark("The project has no artwork. Name a picture with --picture."),
-    "artwork.pieces": mark(
-        "A picture can be printed on one sheet, not on pieces on pins. Choose another construction, or print none."
+    "artwork.printer": mark(
+        "A 3D printer gives each layer one colour and no picture. Choose another construction for artwork."
+    ),
+    "artwork.kiss_cut": mark(
+        "Tiles that are kiss-cut are glued on by the face that gets the picture. Choose tiles that are cut through."
     ),
     "artwork.none": mark("The project has no artwork. Choose a picture first."),
     "artwork.too_many_pixels": mark(

@@ -22,7 +22,10 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, needs_cover
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.document import Document
+from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.studio.cutting import span_mm
 from kirigami_studio.studio.designing import closed_limit, first_of_families, limit_of, why_covered
+from kirigami_studio.studio.verdict import look_at
 
 
 @pytest.fixture(scope="module")
@@ -32,9 +35,14 @@ def keyhole() -> Outline:
     return Outline.from_points(points, "keyhole")
 
 
+#: What the sheets are cut from, mm wide.
+CUT = FabricationSettings(width_mm=90.0)
+
+
 @pytest.fixture(scope="module")
 def run(keyhole: Outline) -> Result:
-    return best_of(Request(keyhole, (8, 8), k=4, polish=3))
+    sizes = {"width_mm": CUT.width_mm, "span_mm": span_mm(CUT)}
+    return best_of(Request(keyhole, (8, 8), k=4, polish=3, **sizes))
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +64,12 @@ def test_that_a_shape_that_turns_back_far_has_two_families_in_one_run(run: Resul
 
 def test_that_a_cover_is_scored_as_the_sheet_that_is_cut(cover: Candidate) -> None:
     assert cover.trim is not None and cover.sheet == cover.trim.sheet == cover.final_sheet
+
+
+def test_that_covers_leave_their_connectors_room_and_match_no_less_for_it(run: Result, keyhole: Outline) -> None:
+    covers = [one for one in run.candidates if one.family is Family.COVER]
+    assert covers and all(look_at(one, CUT, keyhole).refusal is None for one in covers)
+    assert min(one.match for one in covers) > 0.985
 
 
 @pytest.mark.parametrize("change", [{"guided": 0}, {"covers": False}, {"least_gap_mm": 9.0}, {"k": 3}])
