@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
 import shapely
-from shapely.geometry import LineString, MultiPolygon, Polygon
+from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
@@ -47,6 +47,11 @@ class PanelTable:
     #: (E, 4); nodes that may rest on the side after each corner, from beyond the slit there; -1 at the sheet's edge
     guests: IntArray
 
+    def at(self, places: IntArray, hinged: BoolArray) -> PanelTable:
+        """Panels of some places, with other shared corners (E, 4)."""
+        other = replace(self, hinged=hinged)
+        return PanelTable(*(getattr(other, one.name)[places] for one in fields(self)))
+
 
 @cache
 def all_panels(rows: int, columns: int) -> PanelTable:
@@ -62,7 +67,7 @@ def edge_panels(rows: int, columns: int) -> PanelTable:
     """The (cached) panels along the edge of an m x n grid."""
     every = all_panels(rows, columns)
     index = np.flatnonzero(~every.hinged.all(axis=1))
-    return PanelTable(index, every.corners[index], every.hinged[index], every.even[index], every.guests[index])
+    return every.at(index, every.hinged)
 
 
 def _guests(rows: int, columns: int) -> IntArray:
@@ -238,11 +243,15 @@ def _areas(shape: BaseGeometry) -> BaseGeometry:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Around:
-    """Material around the hinges of one panel: one part for each, and all of it; ``points`` (H, 2) are the hinges."""
+    """Material around the hinges of one panel: one part for each, and all of it; ``points`` (H, 2) are the hinges.
+
+    ``cores`` (H,) are what is left of the parts when they shrink as necks do.
+    """
 
     points: FloatArray
     parts: GeometryArray
     all: BaseGeometry
+    cores: GeometryArray
 
 
 def _around_hinges(panel: Polygon, corners: FloatArray, hinged: BoolArray, keep: float) -> _Around:
@@ -253,7 +262,7 @@ def _around_hinges(panel: Polygon, corners: FloatArray, hinged: BoolArray, keep:
     points = corners[hinged]
     discs = shapely.buffer(shapely.points(points), reach[hinged])
     parts = shared_parts(discs, np.full(len(discs), panel))
-    return _Around(points, parts, _united(*parts))
+    return _Around(points, parts, _united(*parts), _core(parts, keep))
 
 
 def _without_slivers(panel: Polygon, wanted: BaseGeometry) -> BaseGeometry | None:
@@ -262,16 +271,16 @@ def _without_slivers(panel: Polygon, wanted: BaseGeometry) -> BaseGeometry | Non
     thin = shapely.is_empty(shapely.buffer(rests, -0.5 * SLIVER))
     if np.all(thin):
         return None
-    return _united(wanted, *rests[thin])
+    return _united(wanted, *rests[thin]) if thin.any() else wanted
 
 
 def _in_one_piece(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> Polygon | None:
     """The piece with all hinges on it, strips added between them if need be; None where the panel is too thin."""
-    if np.any(shapely.is_empty(_core(around.parts, keep))):
+    if np.any(shapely.is_empty(around.cores)):
         return None
     holding = _holding(wanted, around, keep)
     for strip in _strips(panel, wanted, around, keep) if len(holding) > 1 else ():
-        wanted = _united(wanted, strip)
+        wanted = _united(wanted, _shared(strip, panel))
         holding = _holding(wanted, around, keep)
         if len(holding) == 1:
             break
@@ -279,24 +288,25 @@ def _in_one_piece(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: f
     return _solid(_united(_shared(wanted, grown), around.all))
 
 
-def _strips(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> list[BaseGeometry]:
-    """Straight connections between hinges, those first that add least."""
-    pairs = combinations(range(len(around.points)), 2)
-    strips = [_shared(LineString(around.points[list(pair)]).buffer(keep), panel) for pair in pairs]
-    return sorted(strips, key=lambda strip: float(_less(strip, wanted).area))
+def _strips(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> GeometryArray:
+    """Straight connections between hinges, those first that add least; they may reach beyond the panel."""
+    pairs = list(combinations(range(len(around.points)), 2))
+    strips: GeometryArray = np.asarray(shapely.buffer(shapely.linestrings(around.points[pairs]), keep), dtype=object)
+    within = shapely.intersection(strips, panel)
+    added = shapely.area(within) - shapely.area(shapely.intersection(within, wanted))
+    return strips[np.argsort(added, kind="stable")]
 
 
-def _core(shapes: GeometryArray | BaseGeometry, keep: float) -> GeometryArray | BaseGeometry:
+def _core(shapes: GeometryArray, keep: float) -> GeometryArray:
     """What is left when necks and slivers have shrunk to nothing."""
-    core: GeometryArray | BaseGeometry = shapely.buffer(shapes, -NECK * keep, join_style="mitre", mitre_limit=MITRE)
+    core: GeometryArray = shapely.buffer(shapes, -NECK * keep, join_style="mitre", mitre_limit=MITRE)
     return core
 
 
 def _holding(wanted: BaseGeometry, around: _Around, keep: float) -> GeometryArray:
     """Pieces of the core of ``wanted`` that hold hinges."""
-    pieces = shapely.get_parts(_core(wanted, keep))
-    hinges = shapely.union_all(_core(around.parts, keep))
-    held: GeometryArray = pieces[shapely.intersects(pieces, hinges)]
+    pieces = shapely.get_parts(_core(np.array([wanted], dtype=object), keep))
+    held: GeometryArray = pieces[shapely.intersects(pieces[:, None], around.cores).any(axis=1)]
     return held
 
 

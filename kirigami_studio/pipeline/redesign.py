@@ -14,8 +14,9 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate, evaluate_near
 from kirigami_studio.evaluate.second_target import matched_again
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch, siou_of_many
-from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
+from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP, Trim, trim
 from kirigami_studio.fabricate.making_room import roomy
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.trimmed_sheet import needed_keep
@@ -89,13 +90,27 @@ def sampled(candidate: Candidate, target: Outline) -> Candidate | None:
 
 
 def rescored(candidate: Candidate, sheet: Sheet, target: Outline) -> Candidate:
-    """The candidate with another sheet, changed by hand, near its present pose; a trim belonged to the old sheet."""
+    """The candidate with another sheet, changed by hand, near its present pose; one that is trimmed is trimmed again.
+
+    It is cut as deep as before, and not fitted again.  It loses its trim only where the changed sheet has no outside.
+    """
     with one_blas_thread():
         deployment = deploy(sheet)
         score = evaluate_near(deployment, target, candidate.score.phi, candidate.final_pose)
         second = matched_again(deployment, candidate.second)
-    changed = replace(candidate, sheet=sheet, score=score, polished=False, trim=None, second=second)
+        cut = None if candidate.trim is None else _trimmed_as(candidate.trim, deployment, target, score.transform)
+    changed = replace(candidate, sheet=sheet, score=score, polished=False, trim=cut, second=second)
     return replace(changed, origin=Origin.EDITED)
+
+
+def _trimmed_as(before: Trim, deployment: Deployment, target: Outline, pose: Similarity) -> Trim | None:
+    """Trim a changed sheet where the one before it lay, or in another pose if that matches better."""
+    poses = dict.fromkeys((before.pose, pose))
+    try:
+        cuts = [trim(deployment, target, before.phi, one, before.keep, before.deep) for one in poses]
+    except KirigamiError:
+        return None
+    return max(cuts, key=lambda one: one.iou)
 
 
 def keep_for_connectors(

@@ -196,8 +196,11 @@ class Request(DesignChoices):
 
     @property
     def trims(self) -> bool:
-        """Whether its best designs are trimmed: where asked for, and for a target with holes."""
-        return self.trim or bool(self.target.holes)
+        """Whether its best designs are trimmed: where asked for, and for a target with holes.
+
+        Pieces on pins are cut by rules of their own.
+        """
+        return self.trim or (bool(self.target.holes) and not self.pinned)
 
     @property
     def pinned(self) -> bool:

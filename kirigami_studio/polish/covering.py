@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 import shapely
 
-from kirigami_studio.evaluate.alignment import align
+from kirigami_studio.evaluate.alignment import align, align_near
 from kirigami_studio.evaluate.feasibility import path_contact
 from kirigami_studio.evaluate.kept_panels import GRID, edge_panels
 from kirigami_studio.evaluate.similarity import Similarity
@@ -116,9 +116,12 @@ def fit_cover(
     sheet = Sheet.of(design)
 
     def trimmed(fit: Fit) -> Cover:
-        made = room(deploy(fit.sheet)).sheet
-        if made != fit.sheet and path_contact(deploy(made), phi) is None:
-            fit = replace(fit, sheet=made)
+        before = deploy(fit.sheet)
+        made = room(before)
+        if made is not before and path_contact(made, phi) is None:
+            # Room leaves the silhouette what it is, but neither its place nor its size.
+            moved = align_near(made.outline(phi), before.outline(phi), Similarity())
+            fit = replace(fit, sheet=made.sheet, pose=fit.pose.compose(moved))
         return cut(fit, target, phi, keep, cancel)
 
     outline = deploy(sheet).outline(phi)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,8 +28,8 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import symmetry_of
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.starts import RECTANGLE, TURNS_BACK, StartShape, no_closed_sheet_shows
-from kirigami_studio.outlines.turning import turn_back
+from kirigami_studio.outlines.starts import RECTANGLE, TURNS_BACK, StartShape, hollows
+from kirigami_studio.outlines.turning import sides_needed, turn_back
 from kirigami_studio.pipeline.best_as_cut import Looking, best_as_cut
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished, Progress, Result
 from kirigami_studio.pipeline.pool import Pool
@@ -49,6 +49,23 @@ from kirigami_studio.studio.cutting import least_feature_mm, room_mm, span_mm
 if TYPE_CHECKING:
     from kirigami_studio.studio.as_cut import AsCut
 
+#: Notes on what keeps closed sheets from showing a target, by the families that there are designs of.
+_LIMITS = {
+    "covers.turns_back": {
+        frozenset[Family](): "covers.turns_back_ahead",
+        frozenset({Family.CLOSED}): "covers.turns_back_closed",
+        frozenset({Family.COVER}): "covers.turns_back_cover",
+        frozenset(Family): "covers.turns_back",
+    },
+    "covers.many_arms": {
+        frozenset[Family](): "covers.many_arms_ahead",
+        frozenset({Family.CLOSED}): "covers.many_arms_closed",
+        frozenset({Family.COVER}): "covers.many_arms_cover",
+        frozenset(Family): "covers.many_arms",
+    },
+}
+#: Target angles up to this are those of a closed sheet, radians.
+CLOSED = 1e-9
 #: Designs that are estimated as cut between two reports.
 ESTIMATED_AT_ONCE = 8
 
@@ -159,9 +176,6 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
-    gap_mm = pin_gap_mm(cut)
-    if gap_mm and target.holes:
-        raise FabricationError("pinned.target_has_holes", count=len(target.holes))
     return Request.of(
         target,
         wanted,
@@ -171,7 +185,7 @@ def request_for(
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
         room_mm=sizes_of(cut)[1],
         span_mm=_span_of(cut),
-        least_gap_mm=gap_mm,
+        least_gap_mm=pin_gap_mm(cut),
     )
 
 
@@ -269,23 +283,94 @@ def why_covered(candidates: Sequence[Candidate], target: Outline | None, start: 
     Note or None
         None without a target, and where there are designs of one family alone.
     """
+    best = _best_of_families(candidates)
+    if target is None or len(best) < len(Family):
+        return None
+    return closed_limit(candidates, target, start) or Note.of("covers.better", **_figures(best))
+
+
+def closed_limit(candidates: Sequence[Candidate], target: Outline | None, start: StartShape = RECTANGLE) -> Note | None:
+    """Limit of closed sheets for a target, with the most that each family has found.
+
+    Returns
+    -------
+    Note or None
+        None without a target, and where nothing stands against a closed sheet.
+    """
+    if target is None or any(one.score.phi > CLOSED for one in candidates) or not _is_convex(start):
+        return None
+    limit = _limit(target, _sides(candidates, start))
+    if limit is None:
+        return None
+    code, facts = limit
+    best = _best_of_families(candidates)
+    return Note.of(_LIMITS[code][frozenset(best)], **facts, **_figures(best))
+
+
+def limit_of(document: Document) -> Note | None:
+    """Note beside the match of a project's designs: the limit of closed sheets, or of covers.
+
+    Pieces on pins are extended beyond their sheet, so what that cannot show says nothing of them.
+    """
+    opens = not document.candidates and document.settings.phi > CLOSED
+    if opens or pin_gap_mm(document.fabrication):
+        return None
+    return _said(document.candidates, document.target, document.settings.start)
+
+
+def limit_of_run(result: Result) -> Note | None:
+    """The same of the designs of a run."""
+    request = result.request
+    return None if request.least_gap_mm else _said(result.candidates, request.target, request.start)
+
+
+def _said(candidates: Sequence[Candidate], target: Outline | None, start: StartShape) -> Note | None:
+    return why_covered(candidates, target, start) or closed_limit(candidates, target, start)
+
+
+def _best_of_families(candidates: Sequence[Candidate]) -> dict[Family, Candidate]:
+    """The best match of each family, of designs that can be closed."""
     best: dict[Family, Candidate] = {}
     for one in candidates:
         if one.score.feasible and (one.family not in best or one.match > best[one.family].match):
             best[one.family] = one
-    if target is None or len(best) < len(Family):
-        return None
-    closed, cover = best[Family.CLOSED], best[Family.COVER]
-    figures = {"closed": 100.0 * closed.match, "cover": 100.0 * cover.match, "given_up": 100.0 * cover.given_up}
+    return best
+
+
+def _figures(best: Mapping[Family, Candidate]) -> dict[str, float]:
+    """Match of each family, and what covers give up, in percent."""
+    figures = {family.value: 100.0 * one.match for family, one in best.items()}
+    if Family.COVER in best:
+        figures["given_up"] = 100.0 * best[Family.COVER].given_up
+    return figures
+
+
+def _sides(candidates: Sequence[Candidate], start: StartShape) -> float:
+    """Straight sides of the flat sheet; endless where the next run chooses its start."""
+    if not start.is_auto:
+        return start.sides
+    if not candidates:
+        return math.inf
+    outline = candidates[0].sheet.start
+    return RECTANGLE.sides if outline is None else len(outline)
+
+
+@lru_cache(maxsize=16)
+def _is_convex(start: StartShape) -> bool:
+    """Whether a start has no hollows: what is known of closed sheets is known of such."""
+    return start.outline is None or not hollows(start.outline)
+
+
+@lru_cache(maxsize=64)
+def _limit(target: Outline, sides: float) -> tuple[str, Mapping[str, float]] | None:
+    """Code and facts of the limit of closed sheets of so many sides; None without one."""
     target = target.filled
     back = turn_back(target)
     if back.angle >= TURNS_BACK:
         low, high = target.points.min(axis=0), target.points.max(axis=0)
-        across, up = 100.0 * (back.stretch.mean(axis=0) - low) / (high - low)
-        return Note.of("covers.turns_back", degrees=math.degrees(back.angle), across=across, up=up, **figures)
-    if no_closed_sheet_shows(target, start):
-        return Note.of("covers.many_arms", sides=start.sides, **figures)
-    return Note.of("covers.better", **figures)
+        across, up = (100.0 * (back.stretch.mean(axis=0) - low) / (high - low)).tolist()
+        return "covers.turns_back", {"degrees": math.degrees(back.angle), "across": across, "up": up}
+    return ("covers.many_arms", {"sides": sides}) if sides_needed(target) > sides else None
 
 
 def completed(run: Iterator[object], tell: Tell) -> Result:
