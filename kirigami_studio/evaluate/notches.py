@@ -283,7 +283,7 @@ class _NotchCut:
         return shared - STICKING_OUT * (float(shape.area) - shared) - FAR_OFF * far
 
     def _clear_of_guests(self, shapes: GeometryArray, hinged: BoolArray) -> GeometryArray:
-        """The parts of all panels, with room for the connectors that rest on their sides from beyond."""
+        """The parts of all panels, with room for connectors that rest on their sides."""
         panels, cleared = all_panels(self._rows, self._columns), shapes.copy()
         place, there = np.zeros((panels.corners.max() + 1, 2)), np.zeros(panels.corners.max() + 2, dtype=np.bool_)
         place[panels.corners] = self._corners

@@ -197,7 +197,7 @@ class Ranking:
         return [why, *(self._why_later(one, first) for one in candidates[1:])]
 
     def _why_filled(self, candidates: Sequence[Candidate]) -> Note | None:
-        """Why a sheet with filled holes comes first, where trims with open ones are there; None where none does."""
+        """Why a sheet with filled holes comes before trims with open ones; None where none does."""
         if candidates[0].trim is not None or not self.cuttable(candidates[0]):
             return None
         why = next((self.refusals[one] for one in candidates if one in self.refusals and opens_holes(one)), None)
