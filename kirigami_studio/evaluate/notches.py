@@ -276,7 +276,7 @@ class _NotchCut:
         return (shared - STICKING_OUT * (area - shared) if shape is None else self._worth(k, shape)), shape
 
     def _worth(self, k: int, shape: Polygon) -> float:
-        """What a part of a panel adds to the silhouette's worth."""
+        """Worth of a part of a panel to the silhouette."""
         shared, far = float(shape.intersection(self._common[k]).area), 0.0
         if self._open_inside:
             far = float(shape.difference(shapely.buffer(self._targets[k], self._keep)).area)
