@@ -132,7 +132,7 @@ def kept_part(
 def moved_off(
     panel: Polygon, part: Polygon, corners: FloatArray, hinged: BoolArray, guests: FloatArray, keep: float
 ) -> list[Polygon]:
-    """Versions of a part whose edge runs into no side of its panel near the connectors that rest there from beyond.
+    """Versions of a part whose edge keeps off connectors that rest on the panel's sides.
 
     The edge of a part is a rim; a connector beyond it needs ``keep`` of one side alone.  The first version has the
     material around them, the second one is without it, if it is as well in one piece with its hinges.

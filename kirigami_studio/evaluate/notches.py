@@ -276,14 +276,14 @@ class _NotchCut:
         return (shared - STICKING_OUT * (area - shared) if shape is None else self._worth(k, shape)), shape
 
     def _worth(self, k: int, shape: Polygon) -> float:
-        """What a part of a panel adds to the silhouette's worth."""
+        """Worth of a part of a panel to the silhouette."""
         shared, far = float(shape.intersection(self._common[k]).area), 0.0
         if self._open_inside:
             far = float(shape.difference(shapely.buffer(self._targets[k], self._keep)).area)
         return shared - STICKING_OUT * (float(shape.area) - shared) - FAR_OFF * far
 
     def _clear_of_guests(self, shapes: GeometryArray, hinged: BoolArray) -> GeometryArray:
-        """The parts of all panels, with room for the connectors that rest on their sides from beyond."""
+        """The parts of all panels, with room for connectors that rest on their sides."""
         panels, cleared = all_panels(self._rows, self._columns), shapes.copy()
         place, there = np.zeros((panels.corners.max() + 1, 2)), np.zeros(panels.corners.max() + 2, dtype=np.bool_)
         place[panels.corners] = self._corners

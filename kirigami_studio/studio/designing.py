@@ -631,7 +631,7 @@ def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
 
 
 def _span_of(settings: FabricationSettings) -> float:
-    """Width of a connector and of the cut that sheets leave room for; 0 without, and for an unknown material."""
+    """Width of a connector and of the cut that sheets leave room for; 0 without any."""
     try:
         return 0.0 if pin_gap_mm(settings) else span_mm(settings)
     except KirigamiError:
@@ -647,7 +647,7 @@ def gap_of(settings: FabricationSettings) -> float:
 
 
 def least_keep(target: Outline) -> float:
-    """Depth (unit cells) of the material that stays at hinges of a trimmed sheet whatever its connectors are."""
+    """Depth (unit cells) of material that stays at hinges of a trim in any case."""
     return HOLE_KEEP if target.holes else KEEP
 
 
