@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from itertools import combinations
 
@@ -47,6 +47,11 @@ class PanelTable:
     #: (E, 4); nodes that may rest on the side after each corner, from beyond the slit there; -1 at the sheet's edge
     guests: IntArray
 
+    def at(self, places: IntArray, hinged: BoolArray) -> PanelTable:
+        """Panels of some places, with other shared corners (E, 4)."""
+        other = replace(self, hinged=hinged)
+        return PanelTable(*(getattr(other, one.name)[places] for one in fields(self)))
+
 
 @cache
 def all_panels(rows: int, columns: int) -> PanelTable:
@@ -62,7 +67,7 @@ def edge_panels(rows: int, columns: int) -> PanelTable:
     """The (cached) panels along the edge of an m x n grid."""
     every = all_panels(rows, columns)
     index = np.flatnonzero(~every.hinged.all(axis=1))
-    return PanelTable(index, every.corners[index], every.hinged[index], every.even[index], every.guests[index])
+    return every.at(index, every.hinged)
 
 
 def _guests(rows: int, columns: int) -> IntArray:

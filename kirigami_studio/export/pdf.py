@@ -67,12 +67,34 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = Paper.NONE) -> None:
     ExportError
         Unknown paper, too many pages, an unwritable place, or a file that did not read back.
     """
-    names = [(stroke.points, False, NAME_LAYER) for stroke in name_strokes(plan, find_profile("any"))]
-    cuts = [(cut.flattened, cut.closed, cut.layer.value) for cut in plan.copies.of(plan.paths)]
-    about = f"Sheet {plan.size_mm[0]:.1f} x {plan.size_mm[1]:.1f} mm, connectors {plan.connector_mm:g} mm"
-    about += f", {len(plan.copies)} copies" if len(plan.copies) > 1 else ""
     facts = facts_of(plan, find_profile("any"))
-    _write([*names, *cuts], plan.copies.spread_mm, Path(path), paper, plan.design_hash, facts, about)
+    _write(_plan_lines(plan), plan.copies.spread_mm, Path(path), paper, plan.design_hash, facts, _about(plan))
+
+
+def pages_of(size: tuple[float, float], paper: str) -> Tiling:
+    """Lay a drawing (width, height; mm) over pages of a paper, or for "none" on one page as large as it.
+
+    Raises
+    ------
+    ExportError
+        Unknown paper, or too many pages.
+    """
+    return one_page(size) if find_paper(paper) is None else tile(size, paper)
+
+
+def draw_plan(canvas: Any, plan: CutPlan, tiling: Tiling) -> None:
+    """Draw all pages of a plan at 1:1 on a canvas of reportlab, or on one with the same methods."""
+    _draw(canvas, _plan_lines(plan), tiling, plan.copies.spread_mm, _about(plan))
+
+
+def _plan_lines(plan: CutPlan) -> list[Line]:
+    names = [(stroke.points, False, NAME_LAYER) for stroke in name_strokes(plan, find_profile("any"))]
+    return [*names, *((cut.flattened, cut.closed, cut.layer.value) for cut in plan.copies.of(plan.paths))]
+
+
+def _about(plan: CutPlan) -> str:
+    about = f"Sheet {plan.size_mm[0]:.1f} x {plan.size_mm[1]:.1f} mm, connectors {plan.connector_mm:g} mm"
+    return about + (f", {len(plan.copies)} copies" if len(plan.copies) > 1 else "")
 
 
 def write_bed_pdf(bed: SheetBed, path: str | Path, paper: str = Paper.NONE, verdict: str = "") -> None:
@@ -98,7 +120,7 @@ def _write(
     about: str,
 ) -> None:
     """Write lines of a drawing (width, height; mm) and read them back."""
-    tiling = one_page(size) if find_paper(paper) is None else tile(size, paper)
+    tiling = pages_of(size, paper)
     content = _pdf_bytes(lines, tiling, size, title, facts, about)
     write_atomically(path, content, lambda written: _verify(written, lines, tiling))
 
@@ -115,6 +137,12 @@ def one_page(size: tuple[float, float]) -> Tiling:
     return Tiling(page_size_mm(size), 1, 1, (Tile(0, 0, (0.0, 0.0, *size), everything),))
 
 
+def _draw(canvas: Any, lines: Sequence[Line], tiling: Tiling, size: tuple[float, float], about: str) -> None:
+    whole = len(tiling.tiles) == 1
+    canvas.setLineCap(1)
+    draw_pages(canvas, tiling, size, about, lambda part: _draw_lines(canvas, lines, part, whole=whole))
+
+
 def _colour(layer: str) -> Colour:
     return picture.NAME_COLOUR if layer == NAME_LAYER else picture.LAYER_COLOUR[Layer(layer)]
 
@@ -129,9 +157,7 @@ def _pdf_bytes(
     canvas.setTitle(f"Kirigami cut plan {title}")
     canvas.setCreator(f"Kirigami Studio {__version__}")
     canvas.setSubject("; ".join(f"{name} {text}" for name, text in facts.items()))
-    canvas.setLineCap(1)
-    whole = len(tiling.tiles) == 1
-    draw_pages(canvas, tiling, size, about, lambda part: _draw_lines(canvas, lines, part, whole=whole))
+    _draw(canvas, lines, tiling, size, about)
     canvas.save()
     content: bytes = stream.getvalue()
     return content

@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.print_files import PrintJob
+    from kirigami_studio.export.printed_pages import PrintedPages
     from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import PlanReport
@@ -280,6 +281,14 @@ def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned | MadePiec
     """Plan the cuts, or the pieces of a pinned design, and check them."""
     importing.import_as_cut()
     yield pieces_of(request) if request.is_pinned else planned(request, cancel)
+
+
+def laying_pages(plan: CutPlan, paper: str, cancel: Cancel) -> Iterator[PrintedPages]:
+    """Lay a plan over pages of paper, as its PDF has them."""
+    importing.import_exporters()
+    from kirigami_studio.export.printed_pages import printed_pages
+
+    yield printed_pages(plan, paper)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -854,8 +863,8 @@ def written(
         def judge(verifications: Sequence[Verification]) -> Verdict:
             return judged(request, made, as_cut, verifications)
 
-        job = replace(made.layers, grips=_grips_on_tiles(request, made))
-        folder, layers = _layers_written(job, output, judge, made.report.problems)
+        held = replace(made.layers, grips=_grips_on_tiles(request, made))
+        folder, layers = _layers_written(held, output, judge, made.report.problems)
         read = layers.verifications
         return ExportedFiles(folder, made, read, verdict=judge(read), files=layers.files)
     from kirigami_studio.export.export_set import export_all, placed

@@ -51,6 +51,8 @@ if TYPE_CHECKING:
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
+#: Files that open in LightBurn.
+LIGHTBURN = ".lbrn2"
 #: What is said of a machine or a material that a project carries and the user does not have.
 NOT_KNOWN = {
     Machine: mark("You don't have the machine {name}; the project's own values are used."),
@@ -74,6 +76,7 @@ class CutPlanner(QObject):
         self._session = session
         self._job = LatestJob[Planned | MadePieces](session.queue)
         self._wanted: CutRequest | None = None
+        self.made: Planned | MadePieces | None = None  #: the last plan; None where there is none, or it was refused
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(PLAN_DELAY_MS)
@@ -123,16 +126,21 @@ class CutPlanner(QObject):
     def _plan(self) -> None:
         self._job.stop()
         if self._wanted is None:
-            self.planned.emit(None)
+            self._tell(None)
             return
         callbacks = JobCallbacks(partial(self._take, self._wanted), on_failed=partial(self._refuse, self._wanted))
         self._job.start(tr("planning the cuts"), partial(planning, self._wanted), callbacks)
 
     def _take(self, request: CutRequest, made: Planned | MadePieces) -> None:
-        self.planned.emit(made)
+        self._tell(made)
         self.answered.emit(request, made)
 
+    def _tell(self, made: Planned | MadePieces | None) -> None:
+        self.made = made
+        self.planned.emit(made)
+
     def _refuse(self, request: CutRequest, sentence: str, trace: str) -> None:
+        self.made = None
         told = sentence if request.candidate.trim is None else f"{sentence} {tr(TRIM_AGAIN)}"
         self.refused.emit(told)
         self.not_planned.emit(request, told)
@@ -142,6 +150,7 @@ class DesignExporter(QObject):
     """Writes files of the design on the stage; a PDF of many pages only after asking."""
 
     exported = Signal(ExportedFiles)
+    open_wanted = Signal(Path)  #: in the program that the desktop has for it
 
     def __init__(
         self,
@@ -252,6 +261,8 @@ class DesignExporter(QObject):
                 )
             )
             message = message_of(path, made, exported.verdict)
+        if not exported.verifications:  # a report offers the same
+            message = replace(message, actions=((words_to_open(path), partial(self.open_wanted.emit, path)),))
         self._session.post(message)
         for about in older_messages(exported):
             self._session.post(about)
@@ -260,6 +271,13 @@ class DesignExporter(QObject):
     def _report_failure(self, sentence: str, trace: str) -> None:
         self._session.set_status(tr("Export failed."))
         self._session.post(Message(sentence, Tone.ERROR, trace))
+
+
+def words_to_open(path: Path) -> str:
+    """The button that opens a written file or folder."""
+    if path.is_dir():
+        return tr("Open folder")
+    return tr("O&pen in LightBurn") if path.suffix == LIGHTBURN else tr("O&pen file")
 
 
 def older_messages(exported: ExportedFiles) -> list[Message]:

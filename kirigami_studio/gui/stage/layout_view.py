@@ -67,6 +67,7 @@ from kirigami_studio.gui.widgets.mismatch_items import (
     paint_mismatch,
     usual_chips,
 )
+from kirigami_studio.gui.widgets.readable import readable_width
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
@@ -561,7 +562,7 @@ class LayoutView(Canvas):
             paint_dimension(
                 painter,
                 ends,
-                tr("{length_mm:.2f} mm", length_mm=length * self.mm_per_unit),
+                readable_width(length * self.mm_per_unit),
                 self.palette_,
                 occupied,
             )

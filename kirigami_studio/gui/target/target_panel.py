@@ -15,8 +15,8 @@ from kirigami_studio.gui.target.arrangements import EVERY
 from kirigami_studio.gui.target.drawing_tool_bar import DrawingToolBar, LooseRow
 from kirigami_studio.gui.target.target_view import TargetView, Tool
 from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton, compact
-from kirigami_studio.gui.widgets.layouts import Part, label, push_button, row, slider
-from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field
+from kirigami_studio.gui.widgets.layouts import TOUCH, Part, label, push_button, row, slider
+from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field, names_length
 from kirigami_studio.gui.widgets.readable import TIMES, readable_size
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
@@ -44,8 +44,10 @@ class OpenedSizeRow(QWidget):
         self.caption = label(tr("&Opened size"), self.width_)
         self.caption.setMinimumWidth(self.caption.sizeHint().width())
         self.drawn = ToolButton("drawnSize", "chain", tr("Back to the drawn size."))
-        self.drawn.setFixedSize(29, 29)
-        sides = ((self.width_, 1), label(TIMES), (self.height_, 1), label(tr("mm")))
+        self.drawn.setFixedSize(TOUCH, TOUCH)
+        self.unit = label(tr("mm"))
+        names_length(self.unit)
+        sides = ((self.width_, 1), label(TIMES), (self.height_, 1), self.unit)
         row(self.caption, 4, *sides, self.drawn, on=self, spacing=4)
         self.width_.valueChanged.connect(lambda width: self._report(width, 0))
         self.height_.valueChanged.connect(lambda height: self._report(height, 1))

@@ -226,9 +226,11 @@ class Presenters(QObject):
         panel.materials_wanted.connect(dialogs.show_materials)
         panel.export_wanted.connect(files.export)
         panel.exports.all_wanted.connect(files.export_all)
+        panel.exports.print_wanted.connect(dialogs.show_print)
         panel.exports.artwork_wanted.connect(dialogs.export_artwork)
         panel.exports.ideal_wanted.connect(lambda: files.animate(Motion.IDEAL))
         services.exporter.exported.connect(dialogs.show_report)
+        services.exporter.open_wanted.connect(dialogs.open_in_program)
         services.project.recovery.recover_wanted.connect(files.recover)
         for changed in (services.project.stock.added, dialogs.materials_changed):
             changed.connect(self.making.reload_materials)
@@ -328,6 +330,11 @@ class Presenters(QObject):
             return
         pages.turn(WindowPage.DESIGN)
         pages.stage.player.play.setChecked(False)
+
+    def show_unit(self) -> None:
+        """Lengths are shown in another unit: write them all again."""
+        self._show_document(self._services.session.document)
+        self.making.show_unit()
 
     def refit(self, on: bool) -> None:
         """Fit the chosen design again, or stop fitting."""
