@@ -143,7 +143,7 @@ def moved_off(
         Those connectors.
     """
     side = shapely.LineString(corners[[0, 1, 2, 3, 0]])
-    discs = shapely.buffer(shapely.points(guests), keep)
+    discs: GeometryArray = np.asarray(shapely.buffer(shapely.points(guests), keep), dtype=object)
     near = shapely.intersection(side, shapely.buffer(shapely.points(guests), keep, quad_segs=2))
     along = shapely.length(shapely.intersection(near, shapely.buffer(part, GRID, join_style="mitre")))
     halved = (along > SLIVER * keep) & (along < shapely.length(near) - SLIVER * keep)

@@ -145,7 +145,8 @@ class _NotchCut:
         self._common = shared_parts(self._panels, targets)
         self._area, self._inside = shapely.area(self._panels), shapely.area(self._common)
         # Panels (P,) that have stayed whole so far, and their area.
-        self._middle, self._united = np.ones(len(corners), dtype=np.bool_), NOTHING
+        self._middle = np.ones(len(corners), dtype=np.bool_)
+        self._united: BaseGeometry = NOTHING
         self._known: dict[tuple[int, bytes], tuple[float, BaseGeometry | None]] = {}
 
     def first(self) -> BoolArray:
