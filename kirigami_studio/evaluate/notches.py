@@ -210,7 +210,7 @@ class _NotchCut:
         return [int(void) for void in np.flatnonzero(beside)]
 
     def _parts_worth(self, voids: BoolArray, hinged: BoolArray) -> float:
-        """What the parts with these voids and hinges add to the silhouette's worth."""
+        """Worth that the parts with these voids and hinges add to the silhouette."""
         return sum(self._part(k, hinged[k])[0] for k in range(len(hinged))) + float(self._void_gain[voids].sum())
 
     def _draft(self, voids: BoolArray, hinged: BoolArray) -> _NotchDraft:
@@ -255,7 +255,7 @@ class _NotchCut:
         return float(changes + sum(self._part(k, new[k])[0] for k in panels.tolist()))
 
     def _most(self, k: int, hinged: BoolArray) -> float:
-        """What a panel with these hinges may add at most."""
+        """Bound of the worth that a panel with these hinges adds."""
         key = k, hinged.tobytes()
         if key in self._known:
             return self._known[key][0]

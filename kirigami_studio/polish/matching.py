@@ -133,7 +133,7 @@ def _nearest_on(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OneSided:
-    """How what sticks out of the target is weighed: of a layout that will be trimmed little, of horns more."""
+    """Weights of places outside the target: little in a layout that will be trimmed, more at horns."""
 
     excess: float  #: 0..1; weight of what sticks out of the target, relative to what is missed
     vertices: BoolArray  #: (L,); outline vertices where sticking out costs beside that
