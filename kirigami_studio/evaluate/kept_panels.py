@@ -289,7 +289,10 @@ def _in_one_piece(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: f
 
 
 def _strips(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> GeometryArray:
-    """Straight connections between hinges, those first that add least; they may reach beyond the panel."""
+    """Straight connections between hinges, least added area first.
+
+    They may reach beyond the panel.
+    """
     pairs = list(combinations(range(len(around.points)), 2))
     strips: GeometryArray = np.asarray(shapely.buffer(shapely.linestrings(around.points[pairs]), keep), dtype=object)
     within = shapely.intersection(strips, panel)

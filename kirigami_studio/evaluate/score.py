@@ -171,7 +171,9 @@ def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Si
 
 
 def _upright(deployment: Deployment, match: ShapeMatch, outline: Outline, phi: float) -> ShapeMatch:
-    """The match with the mirror axis of a design upright, where the target looks the same turned so.
+    """Turn a match so that the mirror axis of its design is upright.
+
+    Only where the target looks the same turned so.
 
     A star has five axes: which of them a design has is decided by rounding, and one that leans looks like a mistake.
     """
