@@ -143,7 +143,7 @@ def moved_off(
         Those connectors.
     """
     side = shapely.LineString(corners[[0, 1, 2, 3, 0]])
-    discs = shapely.buffer(shapely.points(guests), keep)
+    discs: GeometryArray = np.asarray(shapely.buffer(shapely.points(guests), keep), dtype=object)
     near = shapely.intersection(side, shapely.buffer(shapely.points(guests), keep, quad_segs=2))
     along = shapely.length(shapely.intersection(near, shapely.buffer(part, GRID, join_style="mitre")))
     halved = (along > SLIVER * keep) & (along < shapely.length(near) - SLIVER * keep)
@@ -289,7 +289,10 @@ def _in_one_piece(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: f
 
 
 def _strips(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> GeometryArray:
-    """Straight connections between hinges, those first that add least; they may reach beyond the panel."""
+    """Straight connections between hinges, least added area first.
+
+    They may reach beyond the panel.
+    """
     pairs = list(combinations(range(len(around.points)), 2))
     strips: GeometryArray = np.asarray(shapely.buffer(shapely.linestrings(around.points[pairs]), keep), dtype=object)
     within = shapely.intersection(strips, panel)
