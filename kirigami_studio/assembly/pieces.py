@@ -8,7 +8,7 @@ by +a (Eq. 1), so that those of one layer never turn against each other.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -57,6 +57,8 @@ class Piece:
         Largest height of the number there.
     marks : tuple of (K, 2) float, mm
         Open lines to engrave, where tabs are stuck on.
+    drawn : tuple of (K, 2) float, mm
+        Lines of artwork on its front; a closed one repeats its first point.
     pivot : (2,) float or None, mm
         Of an arm: its origin in the frame of its panel's piece, about which it turns as the other layer does.
     """
@@ -70,6 +72,7 @@ class Piece:
     label_at: FloatArray | tuple[float, float] = (0.0, 0.0)
     label_mm: float = 3.0
     marks: tuple[FloatArray, ...] = ()
+    drawn: tuple[FloatArray, ...] = ()
     pivot: FloatArray | None = None
 
 
@@ -152,7 +155,16 @@ class Assembly:
                 turns[index] = -turns[index]
         return np.column_stack([origins, turns])
 
+    def placing(self, phi: float) -> Callable[[Piece, FloatArray], FloatArray]:
+        """What carries points (..., 2) of a piece's frame to their places at ``phi``, mm."""
+        poses = dict(zip(self.pieces, self.poses(phi).tolist(), strict=True))
+
+        def placed(piece: Piece, points: FloatArray) -> FloatArray:
+            x, y, turn = poses[piece]
+            return np.asarray(rotate(points, turn) + np.array([x, y]))
+
+        return placed
+
     def placed(self, piece: Piece, points: FloatArray, phi: float) -> FloatArray:
         """Carry points (..., 2) of a piece's frame to their places at ``phi``, mm."""
-        x, y, turn = self.poses(phi)[self.pieces.index(piece)]
-        return np.asarray(rotate(points, turn) + np.array([x, y]))
+        return self.placing(phi)(piece, points)

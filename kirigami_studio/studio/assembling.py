@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 from shapely.errors import GEOSException
 
@@ -31,7 +32,7 @@ from kirigami_studio.settings.fabrication import (
     material_for,
     pin_sizes,
 )
-from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
+from kirigami_studio.studio.as_cut import AsCut, motion_on_pins, motions_on_pins
 from kirigami_studio.studio.cutting import kerf_mm
 
 #: Weight of the target against the flat outline: pieces stick out of that one for it where it has area to spare.
@@ -138,7 +139,8 @@ def assembled(
         except GEOSException as error:  # floating point ended the geometry of this one design
             raise FabricationError("pinned.not_made", reason=error) from error
         plan = replace(plan, assembly=with_places(plan.assembly, places.places))
-        drive, refused = driven(plan, settings.moved_by if machine is None else DriveKind.NONE)
+        moved_by = settings.moved_by if machine is None else DriveKind.NONE
+        drive, refused = driven(plan, moved_by, partial(motions_on_pins, plan.assembly.deployment, settings))
         report = replace(report, problems=(*report.problems, *places.problems, *refused))
         made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match), places, drive)
     _KEPT[key] = made
