@@ -114,9 +114,8 @@ def rim_loops(panels: PanelTable) -> list[IntArray]:
 
 def _panels_of(voids: BoolArray, grid: tuple[int, int]) -> PanelTable:
     """Panels and pins of voids (m, n)."""
-    every, hinged = all_panels(*grid), hinges_of(voids)
-    there = hinged.any(axis=1)
-    return PanelTable(every.index[there], every.corners[there], hinged[there], every.even[there])
+    hinged = hinges_of(voids)
+    return all_panels(*grid).some(hinged.any(axis=1), hinged)
 
 
 def _left_by(trim: Trim, deployment: Deployment) -> PanelTable:
@@ -130,8 +129,7 @@ def _left_by(trim: Trim, deployment: Deployment) -> PanelTable:
             reached[number] &= near
     both = np.bincount(every.corners.ravel(), reached.ravel())[every.corners] > 1.0
     hinged = reached & both
-    there = hinged.any(axis=1)
-    return PanelTable(every.index[there], every.corners[there], hinged[there], every.even[there])
+    return every.some(hinged.any(axis=1), hinged)
 
 
 class _OpenHoles:

@@ -47,6 +47,11 @@ class PanelTable:
     #: (E, 4); nodes that may rest on the side after each corner, from beyond the slit there; -1 at the sheet's edge
     guests: IntArray
 
+    def some(self, chosen: BoolArray | IntArray, hinged: BoolArray | None = None) -> PanelTable:
+        """Those that are chosen, with other hinges (E, 4) where given."""
+        kept = (self.hinged if hinged is None else hinged)[chosen]
+        return PanelTable(self.index[chosen], self.corners[chosen], kept, self.even[chosen], self.guests[chosen])
+
 
 @cache
 def all_panels(rows: int, columns: int) -> PanelTable:
@@ -61,8 +66,7 @@ def all_panels(rows: int, columns: int) -> PanelTable:
 def edge_panels(rows: int, columns: int) -> PanelTable:
     """The (cached) panels along the edge of an m x n grid."""
     every = all_panels(rows, columns)
-    index = np.flatnonzero(~every.hinged.all(axis=1))
-    return PanelTable(index, every.corners[index], every.hinged[index], every.even[index], every.guests[index])
+    return every.some(~every.hinged.all(axis=1))
 
 
 def _guests(rows: int, columns: int) -> IntArray:
