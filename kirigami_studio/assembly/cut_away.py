@@ -34,8 +34,6 @@ MOSTLY = 0.5
 LEAST_GAIN_MM2, ROUNDS = 1.0, 3
 #: A symmetric sheet keeps its symmetry where panels lie in holes by shares that differ by no more from their images'.
 ALIKE = 0.1
-#: Pins in holes that are farther from the rim than this share of their wall's radius are left out where others suffice.
-IN_HOLE = 0.0
 #: Nearer than this (unit cells) what a trim left of a panel has its corner.
 AT_CORNER = 0.02
 
@@ -60,24 +58,23 @@ def panels_left(design: PosedDesign, shown: Polygon, cell_mm: float, options: Pi
     return _panels_of(_OpenHoles(design, shown, cell_mm, options).voids(), grid)
 
 
-def pins_in_holes(deployment: Deployment, phi: float, shown: Polygon, cell_mm: float, options: PinOptions) -> list[int]:
-    """Nodes of pins whose walls are mostly in holes of the target at ``phi``, the farthest in first."""
+def pins_in_holes(deployment: Deployment, phi: float, shown: Polygon, cell_mm: float) -> list[int]:
+    """Nodes of pins in holes of the target at ``phi``, the farthest in first."""
     if not shown.interiors:
         return []
     holes = shapely.union_all([Polygon(ring) for ring in shown.interiors])
     nodes = np.unique(deployment.topology.void_nodes)
     places = shapely.points(deployment.nodes(phi)[nodes] * cell_mm)
-    inside = shapely.distance(places, shown)
-    inside[~shapely.contains(holes, places)] = 0.0
-    deep = np.flatnonzero(inside > IN_HOLE * options.keep_mm)
-    found: list[int] = nodes[deep[np.argsort(-inside[deep], kind="stable")]].tolist()
+    inside = shapely.contains(holes, places)
+    deep = np.asarray(shapely.distance(places[inside], shown))
+    found: list[int] = nodes[inside][np.argsort(-deep, kind="stable")].tolist()
     return found
 
 
 def kept_voids(panels: PanelTable, grid: tuple[int, int]) -> BoolArray:
     """Voids (m, n) with all four panels and pins."""
-    kept: BoolArray = np.isin(topology(*grid).void_nodes, panels.corners[panels.hinged]).all(axis=-1)
-    return kept
+    kept = np.isin(topology(*grid).void_nodes, panels.corners[panels.hinged])
+    return np.asarray(kept.all(axis=-1))
 
 
 def rim_loops(panels: PanelTable) -> list[IntArray]:
@@ -114,8 +111,8 @@ def rim_loops(panels: PanelTable) -> list[IntArray]:
 
 def _panels_of(voids: BoolArray, grid: tuple[int, int]) -> PanelTable:
     """Panels and pins of voids (m, n)."""
-    hinged = hinges_of(voids)
-    return all_panels(*grid).some(hinged.any(axis=1), hinged)
+    every, hinged = all_panels(*grid), hinges_of(voids)
+    return every.at(np.flatnonzero(hinged.any(axis=1)), hinged)
 
 
 def _left_by(trim: Trim, deployment: Deployment) -> PanelTable:
@@ -129,7 +126,7 @@ def _left_by(trim: Trim, deployment: Deployment) -> PanelTable:
             reached[number] &= near
     both = np.bincount(every.corners.ravel(), reached.ravel())[every.corners] > 1.0
     hinged = reached & both
-    return every.some(hinged.any(axis=1), hinged)
+    return every.at(np.flatnonzero(hinged.any(axis=1)), hinged)
 
 
 class _OpenHoles:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from itertools import combinations
 
@@ -47,10 +47,10 @@ class PanelTable:
     #: (E, 4); nodes that may rest on the side after each corner, from beyond the slit there; -1 at the sheet's edge
     guests: IntArray
 
-    def some(self, chosen: BoolArray | IntArray, hinged: BoolArray | None = None) -> PanelTable:
-        """Those that are chosen, with other hinges (E, 4) where given."""
-        kept = (self.hinged if hinged is None else hinged)[chosen]
-        return PanelTable(self.index[chosen], self.corners[chosen], kept, self.even[chosen], self.guests[chosen])
+    def at(self, places: IntArray, hinged: BoolArray) -> PanelTable:
+        """Panels of some places, with other shared corners (E, 4)."""
+        other = replace(self, hinged=hinged)
+        return PanelTable(*(getattr(other, one.name)[places] for one in fields(self)))
 
 
 @cache
@@ -66,7 +66,8 @@ def all_panels(rows: int, columns: int) -> PanelTable:
 def edge_panels(rows: int, columns: int) -> PanelTable:
     """The (cached) panels along the edge of an m x n grid."""
     every = all_panels(rows, columns)
-    return every.some(~every.hinged.all(axis=1))
+    index = np.flatnonzero(~every.hinged.all(axis=1))
+    return every.at(index, every.hinged)
 
 
 def _guests(rows: int, columns: int) -> IntArray:

@@ -11,6 +11,7 @@ import math
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -251,7 +252,7 @@ class _Drawing:
                 piece.id,
                 place(piece, np.asarray(piece.label_at, dtype=np.float64)) - low,
                 _room(piece.outline, piece.label_mm),
-                _lines(piece, lambda points, piece=piece: place(piece, points) - low),
+                _lines(piece, partial(place, piece), low),
             )
             for piece in pieces
         ]
@@ -277,7 +278,7 @@ class _Drawing:
                 cuts.piece.id,
                 place.put(np.asarray(cuts.piece.label_at, dtype=np.float64)),
                 _room(cuts.piece.outline, cuts.piece.label_mm),
-                _lines(cuts.piece, place.put),
+                _lines(cuts.piece, place.put, np.zeros(2)),
             )
             for cuts, place in sorted(bed.placed, key=lambda placed: placed[0].piece.id != bed.frame)
         ]  # fmt: skip
@@ -290,12 +291,12 @@ _TURN = 2.0 * np.pi * np.arange(PIN_CORNERS) / PIN_CORNERS
 CIRCLE: FloatArray = np.column_stack([np.cos(_TURN), np.sin(_TURN)])
 
 
-def _lines(piece: Piece, put: Callable[[FloatArray], FloatArray]) -> tuple[FloatArray, ...]:
-    """Lines of artwork on a piece, each (P, 2), mm, where it is put."""
+def _lines(piece: Piece, put: Callable[[FloatArray], FloatArray], low: FloatArray) -> tuple[FloatArray, ...]:
+    """Lines of artwork on a piece, each (P, 2), mm, where it is put, from a place ``low``."""
     if not piece.drawn:
         return ()
     ends = np.cumsum([len(line) for line in piece.drawn])[:-1]
-    return tuple(np.split(put(np.concatenate(piece.drawn)), ends))
+    return tuple(np.split(put(np.concatenate(piece.drawn)) - low, ends))
 
 
 def _room(outline: FloatArray, label_mm: float) -> float:

@@ -97,7 +97,7 @@ def test_that_pieces_leave_the_holes_of_their_target_open_and_move_in_one_way(na
     assert report.figures.wall_mm > found.plan.options.asked_wall_mm - 0.03
     assert len(assembly.hinges) <= 36
     assert all(Polygon(piece.outline, piece.openings).is_valid for piece in assembly.pieces)
-    panels = all_panels(4, 4).some(assembly.numbers)
+    panels = all_panels(4, 4).at(assembly.numbers, all_panels(4, 4).hinged)
     motion = LayerMotion.of(assembly.deployment, assembly.cell_mm, 0.0, panels=panels)
     pinned = np.isin(motion.nodes, [hinge.node for hinge in assembly.hinges])
     assert freedom(replace(motion, hinged=motion.hinged & pinned)) == 1
@@ -166,7 +166,7 @@ def test_that_rims_of_holes_are_loops_of_sides_that_border_no_void() -> None:
     voids, every = np.ones((6, 6), dtype=np.bool_), all_panels(6, 6)
     voids[1:3, 1:3] = voids[3:5, 4] = voids[0, 5] = False
     hinged = hinges_of(voids)
-    panels = every.some(hinged.any(axis=1), hinged)
+    panels = every.at(np.flatnonzero(hinged.any(axis=1)), hinged)
     assert np.array_equal(kept_voids(panels, (6, 6)), voids)
     design, loops, areas = deploy(RatioField(np.full((6, 6), 1.3))), rim_loops(panels), []
     for loop in loops:
