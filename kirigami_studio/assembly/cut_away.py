@@ -58,12 +58,12 @@ def panels_left(design: PosedDesign, shown: Polygon, cell_mm: float, options: Pi
     return _panels_of(_OpenHoles(design, shown, cell_mm, options).voids(), grid)
 
 
-def pins_in_holes(deployment: Deployment, phi: float, shown: Polygon, cell_mm: float) -> list[int]:
-    """Nodes of pins in holes of the target at ``phi``, the farthest in first."""
+def pins_in_holes(deployment: Deployment, panels: PanelTable, phi: float, shown: Polygon, cell_mm: float) -> list[int]:
+    """Nodes of pins of panels that are in holes of the target at ``phi``, the farthest in first."""
     if not shown.interiors:
         return []
     holes = shapely.union_all([Polygon(ring) for ring in shown.interiors])
-    nodes = np.unique(deployment.topology.void_nodes)
+    nodes = np.unique(panels.corners[panels.hinged])
     places = shapely.points(deployment.nodes(phi)[nodes] * cell_mm)
     inside = shapely.contains(holes, places)
     deep = np.asarray(shapely.distance(places[inside], shown))
