@@ -106,7 +106,7 @@ def pinned(
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
     with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
         shaping = Shaping.of(
-            deployment, cell_mm, phi, options, panels, pins_in_holes(deployment, phi, shown, cell_mm, options)
+            deployment, cell_mm, phi, options, panels, pins_in_holes(deployment, panels, phi, shown, cell_mm)
         )
         if only_whole and shaping.broken:
             first = piece_names(shaping.motion)[min(shaping.broken)]

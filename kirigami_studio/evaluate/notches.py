@@ -154,15 +154,15 @@ class _NotchCut:
         mostly = largest_set(self._shares() >= MOSTLY)
         if self._open_inside:
             return mostly
-        outside, _ = labelled(np.pad(~mostly, 1, constant_values=True), EIGHT_WAYS)
+        outside, _ = _labelled(np.pad(~mostly, 1, constant_values=True), EIGHT_WAYS)
         whole: BoolArray = outside[1:-1, 1:-1] != outside[0, 0]
         return whole
 
     def _is_one(self, voids: BoolArray) -> bool:
         """Whether voids hang together by hinges, and so does all around them unless it may be open."""
-        if labelled(voids)[1] != 1:
+        if _labelled(voids)[1] != 1:
             return False
-        return self._open_inside or labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)[1] == 1
+        return self._open_inside or _labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)[1] == 1
 
     def _shares(self) -> FloatArray:
         """Part of the panels around each void that lies on the target: (m, n)."""
@@ -370,7 +370,7 @@ def _hinge_pairs(rows: int, columns: int) -> tuple[tuple[IntArray, IntArray], tu
     return (panel, corner), (neighbour, corner + 2)
 
 
-def labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArray, int]:
+def _labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArray, int]:
     """Numbers of the connected sets of voids, and how many there are."""
     # Imported when it is needed: it takes long, and the window starts without it.
     from scipy.ndimage import label
@@ -381,7 +381,7 @@ def labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArr
 
 def largest_set(voids: BoolArray) -> BoolArray:
     """The largest connected set of voids."""
-    numbers, count = labelled(voids)
+    numbers, count = _labelled(voids)
     if count == 0:
         return voids
     largest: BoolArray = numbers == 1 + int(np.argmax(np.bincount(numbers.ravel())[1:]))
