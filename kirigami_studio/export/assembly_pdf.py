@@ -11,6 +11,7 @@ import math
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -252,7 +253,7 @@ class _Drawing:
                 piece.id,
                 assembly.placed(piece, np.asarray(piece.label_at, dtype=np.float64), phi) - low,
                 _room(piece.outline, piece.label_mm),
-                _lines(piece, lambda points, piece=piece: assembly.placed(piece, points, phi) - low),
+                tuple(line - low for line in _lines(piece, partial(assembly.placed, piece, phi=phi))),
             )
             for piece in pieces
         ]

@@ -848,8 +848,8 @@ def written(
         def judge(verifications: Sequence[Verification]) -> Verdict:
             return judged(request, made, as_cut, verifications)
 
-        job = replace(made.layers, grips=_grips_on_tiles(request, made))
-        folder, layers = _layers_written(job, output, judge, made.report.problems)
+        gripped = replace(made.layers, grips=_grips_on_tiles(request, made))
+        folder, layers = _layers_written(gripped, output, judge, made.report.problems)
         read = layers.verifications
         return ExportedFiles(folder, made, read, verdict=judge(read), files=layers.files)
     from kirigami_studio.export.export_set import export_all, placed
