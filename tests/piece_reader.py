@@ -138,6 +138,7 @@ def recognise(folder: Path, kind: str, kerf_mm: float) -> Recognised:
     """Read the files of a kind, and recognise every piece once."""
     record = json.loads((folder / "pieces.json").read_text())
     wanted = {piece["id"]: piece for piece in record["pieces"]}
+    whole = {name: filleted(Polygon(piece["outline"]), kerf_mm) for name, piece in wanted.items()}
     found: dict[str, tuple[Polygon, np.ndarray]] = {}
     beams: dict[str, tuple[Path, Polygon, np.ndarray, np.ndarray]] = {}
     outline_mm = holes_mm = 0.0
@@ -154,10 +155,10 @@ def recognise(folder: Path, kind: str, kerf_mm: float) -> Recognised:
             burned = [one.buffer(0.5 * kerf_mm, quad_segs=64) for one in pockets if beam.contains(one)]
             finished = beam.buffer(-0.5 * kerf_mm, quad_segs=64).difference(shapely.union_all(burned))
             here = np.array([holes[at] for at in mine]).reshape(-1, 2)
-            name, turn, shift, miss = recognised(finished, here, layer, wanted, found, kerf_mm)
+            name, turn, shift, miss = recognised(finished, here, layer, wanted, whole, found)
             area = shapely.transform(finished, lambda points, turn=turn, shift=shift: points @ turn.T + shift)
             meant = Polygon(wanted[name]["outline"])
-            fillets = filleted(meant, kerf_mm)
+            fillets = whole[name]
             corners = shapely.points(shapely.get_coordinates(area))
             outline_mm = max(outline_mm, shapely.distance(shapely.points(np.array(meant.exterior.coords)), area).max(),
                              shapely.distance(corners, fillets).max())  # fmt: skip
@@ -217,14 +218,19 @@ def filleted(area: Polygon, kerf_mm: float) -> Polygon:
 
 
 def recognised(
-    area: Polygon, holes: np.ndarray, layer: int, wanted: dict[str, dict], found: dict[str, object], kerf_mm: float
+    area: Polygon,
+    holes: np.ndarray,
+    layer: int,
+    wanted: dict[str, dict],
+    whole: dict[str, Polygon],
+    found: dict[str, object],
 ) -> tuple[str, np.ndarray, np.ndarray, float]:
     """The piece of a layer that is not found yet and fits best; its turn, its shift, and how far its holes are off."""
     best = ("", np.eye(2), np.zeros(2), np.inf)
     for name, piece in wanted.items():
         if piece["layer"] != layer or name in found or len(piece["holes"]) != len(holes):
             continue
-        meant = filleted(Polygon(piece["outline"]), kerf_mm)
+        meant = whole[name]
         if abs(meant.area - area.area) > 0.5:
             continue
         middles = np.array([Polygon(ring).centroid.coords[0] for ring in piece["holes"]]).reshape(-1, 2)
@@ -247,25 +253,36 @@ def fitted(points: np.ndarray, onto: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return turn, shift, float(np.linalg.norm(points @ turn.T + shift - onto, axis=1)[:-1].max(initial=0.0))
 
 
+def nearest(holes: np.ndarray, pin: list[float]) -> np.ndarray:
+    """The hole of a piece that is nearest to a pin's place in it."""
+    return holes[np.linalg.norm(holes - pin, axis=1).argmin()]
+
+
 def moved(record: dict, found: dict[str, tuple[Polygon, np.ndarray]], layers: dict[str, int]) -> tuple[float, float]:
     """Farthest that the holes of a pin are apart, and largest overlap within a layer, over the whole motion."""
     pins = overlap = 0.0
+    names = list(found)
+    layer = np.array([layers[name] for name in names])
+    areas = np.array([found[name][0] for name in names], dtype=object)
+    points, owner = shapely.get_coordinates(areas, return_index=True)
+    pinned = [[names.index(hinge["pieces"][side]) for hinge in record["hinges"]] for side in (0, 1)]
+    drilled = [
+        np.array([nearest(found[hinge["pieces"][side]][1], hinge["at"][side]) for hinge in record["hinges"]])
+        for side in (0, 1)
+    ]
     for step in record["motion"]:
-        areas, holes = {}, {}
-        for name, (area, middles) in found.items():
-            x, y, turn = step["poses"][name]
-            turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-            areas[name] = shapely.transform(area, lambda points, t=turned, s=(x, y): points @ t.T + s)
-            holes[name] = middles @ turned.T + (x, y)
-        for hinge in record["hinges"]:
-            ends = []
-            for name, at in zip(hinge["pieces"], hinge["at"], strict=True):
-                x, y, turn = step["poses"][name]
-                turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-                pin = turned @ np.array(at) + (x, y)
-                ends.append(holes[name][np.linalg.norm(holes[name] - pin, axis=1).argmin()])
-            pins = max(pins, float(np.linalg.norm(ends[0] - ends[1])))
-        for layer in set(layers.values()):
-            here = [areas[name] for name in areas if layers[name] == layer]
-            overlap = max(overlap, sum(area.area for area in here) - shapely.union_all(here).area)
+        poses = np.array([step["poses"][name] for name in names])
+        turn, shift = np.exp(1j * poses[:, 2]), poses[:, 0] + 1j * poses[:, 1]
+        ends = [
+            turn[here] * (holes.reshape(-1, 2) @ (1.0, 1j)) + shift[here]
+            for here, holes in zip(pinned, drilled, strict=True)
+        ]
+        pins = max(pins, float(np.abs(ends[0] - ends[1]).max(initial=0.0)))
+        moved_points = turn[owner] * (points @ (1.0, 1j)) + shift[owner]
+        placed = shapely.set_coordinates(areas.copy(), np.column_stack([moved_points.real, moved_points.imag]))
+        one, other = shapely.STRtree(placed).query(placed, predicate="intersects")
+        pairs = (one < other) & (layer[one] == layer[other])
+        shared = shapely.area(shapely.intersection(placed[one[pairs]], placed[other[pairs]]))
+        for number in set(layers.values()):
+            overlap = max(overlap, float(shared[layer[one[pairs]] == number].sum()))
     return pins, overlap

@@ -296,7 +296,7 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
             by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces if piece.id in moving})
     record = pieces_json(job.whole, holds=job.holds)
     write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
-    verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
+    verified.append(_motion_verified(job, record, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
     sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
     sheet = replace(sheet, grips=job.grips)
@@ -572,10 +572,9 @@ def _plain(points: FloatArray) -> Any:
 
 
 def _poses(assembly: Assembly, phi: float) -> dict[str, list[float]]:
-    return {
-        piece.id: [round(x, LENGTH_DECIMALS) + 0.0, round(y, LENGTH_DECIMALS) + 0.0, round(turn, TURN_DECIMALS) + 0.0]
-        for piece, (x, y, turn) in zip(assembly.pieces, assembly.poses(phi).tolist(), strict=True)
-    }
+    poses = assembly.poses(phi)
+    rounded = np.column_stack([poses[:, :2].round(LENGTH_DECIMALS), poses[:, 2].round(TURN_DECIMALS)]) + 0.0
+    return dict(zip((piece.id for piece in assembly.pieces), rounded.tolist(), strict=True))
 
 
 def _ring(hole: RoundHole) -> FloatArray:
@@ -589,18 +588,24 @@ def _ring(hole: RoundHole) -> FloatArray:
 
 
 def _motion_verified(
-    job: AssemblyJob, path: Path, goal: Path, by_kind: Mapping[str, Mapping[str, FoundPiece]], known: KnownOutlines
+    job: AssemblyJob,
+    meant: Mapping[str, Any],
+    path: Path,
+    goal: Path,
+    by_kind: Mapping[str, Mapping[str, FoundPiece]],
+    known: KnownOutlines,
 ) -> Verification:
     """Read pieces and motion back, and put the pieces of each kind of file together."""
     record = json.loads(path.read_bytes())
-    right = record == pieces_json(job.whole, holds=job.holds)
+    right = record == meant
     findings = [Finding.judged(right, "verify.motion_as_planned" if right else "verify.motion_differs", angles=ANGLES)]
     for kind, pieces in by_kind.items():
         if not right or set(pieces) != set(job.whole.by_id):
             continue
         moved = [*motion_findings(pieces, record, known), *hold_findings(pieces, record)]
         findings += [replace(finding, reader=kind.removeprefix(".").upper()) for finding in moved]
-    far = np.concatenate([job.assembly.placed(piece, piece.outline, math.pi) for piece in job.assembly.pieces])
+    place = job.assembly.placing(math.pi)
+    far = np.concatenate([place(piece, piece.outline) for piece in job.assembly.pieces])
     width, height = np.ptp(far, axis=0).tolist()
     return Verification(
         path=goal,

@@ -14,6 +14,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 import shapely
+from scipy.spatial import cKDTree
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -34,10 +35,8 @@ from kirigami_studio.foundation.errors import FabricationError
 
 #: Material (mm) that stays between the cuts of neighbours.
 WEB_MM = 1.0
-#: Chords of a quarter circle of the beam; of a kerf of 5 mm they miss 0.2 um.
-BEAM_CHORDS = 64
-#: Chords of a corner that the beam goes round miss it by this (mm).
-CORNER_CHORD_MM = 1e-4
+#: Chords of the beam's circle, and of a corner that it goes round, miss them by this (mm).
+BEAM_CHORD_MM = 1e-4
 #: Material (mm) that may be left beside a sharp corner beyond the fillet of a beam.
 SHARP_MM = 5e-4
 #: Layers of a sheet, and the stem of the file of all parts behind them.
@@ -90,7 +89,8 @@ class PieceCuts:
         inner = [_offset(piece, opening[::-1], -half, kerf_mm)[0][::-1] for opening in piece.openings]
         openings = (*inner, *pockets)
         holes = tuple(RoundHole(hole.centre, hole.diameter_mm - kerf_mm) for hole in piece.holes)
-        rounds = [shapely.Point(hole.centre).buffer(0.5 * hole.diameter_mm, quad_segs=ROUND) for hole in holes]
+        centres = shapely.points(np.array([hole.centre for hole in holes]).reshape(-1, 2))
+        rounds = shapely.buffer(centres, [0.5 * hole.diameter_mm for hole in holes], quad_segs=ROUND)
         solid = shapely.difference(Polygon(outline, openings), shapely.union_all(rounds))
         area: BaseGeometry = solid.buffer(-clearance_mm(kerf_mm))
         marks = [line for mark in piece.marks for line in shapely.get_parts(area.intersection(LineString(mark)))]
@@ -124,8 +124,8 @@ def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> lis
     asked = Polygon(ring)
     area = shapely.buffer(asked, by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
     least = closed_by(asked, by_mm)
-    if farthest(area.buffer(-by_mm, quad_segs=BEAM_CHORDS), least) > SHARP_MM:
-        area = shapely.buffer(asked, by_mm, quad_segs=_quarter_chords(abs(by_mm)))
+    if farthest(area.buffer(-by_mm, quad_segs=beam_chords(by_mm)), least) > SHARP_MM:
+        area = shapely.simplify(shapely.buffer(asked, by_mm, quad_segs=beam_chords(by_mm)), SHARP_MM)
     if not isinstance(area, Polygon) or area.is_empty:
         raise FabricationError("pieces.narrower_than_kerf", piece=piece.id, kerf_mm=kerf_mm)
     area = shapely.orient_polygons(area)
@@ -133,16 +133,17 @@ def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> lis
     return [shapely.get_coordinates(one)[:-1] for one in (area.exterior, *pockets)]
 
 
-def _quarter_chords(radius: float) -> int:
-    """Chords of a quarter circle that stay within ``CORNER_CHORD_MM`` of it."""
-    return math.ceil(0.25 * math.pi / math.acos(1.0 - min(1.0, CORNER_CHORD_MM / radius)))
+def beam_chords(half_mm: float) -> int:
+    """Chords of a quarter of the beam's circle that stay within ``BEAM_CHORD_MM`` of it."""
+    return math.ceil(0.25 * math.pi / math.acos(1.0 - min(1.0, BEAM_CHORD_MM / abs(half_mm)))) if half_mm else 1
 
 
 def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
     """The area that a beam round it leaves: with fillets where it turns inwards."""
     if half_mm == 0.0:
         return area
-    return area.buffer(half_mm, quad_segs=BEAM_CHORDS).buffer(-half_mm, quad_segs=BEAM_CHORDS)
+    chords = beam_chords(half_mm)
+    return area.buffer(half_mm, quad_segs=chords).buffer(-half_mm, quad_segs=chords)
 
 
 def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
@@ -150,18 +151,16 @@ def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
     corners, others = shapely.get_coordinates(one), shapely.get_coordinates(other)
     if not len(corners) or not len(others):
         return math.inf
-    tree = shapely.STRtree(np.asarray(shapely.points(others), dtype=object).reshape(-1))
-    points = np.asarray(shapely.points(corners), dtype=object).reshape(-1)
-    near = tree.query_nearest(points, return_distance=True, all_matches=False)[1]
+    near = np.asarray(cKDTree(others).query(corners)[0])
     # From corner to corner is quick, and nearly always near enough; of the others most lie in the shape.
     far = np.flatnonzero(near > SHARP_MM)
     if len(far):
         shapely.prepare(other)
-        outside = far[~shapely.intersects(other, points[far])]
+        outside = far[~shapely.intersects_xy(other, *corners[far].T)]
         near[far] = 0.0
         if len(outside):
-            sides = shapely.STRtree(_sides(other))
-            near[outside] = sides.query_nearest(points[outside], return_distance=True, all_matches=False)[1]
+            points, sides = shapely.points(corners[outside]), shapely.STRtree(_sides(other))
+            near[outside] = sides.query_nearest(points, return_distance=True, all_matches=False)[1]
     return float(near.max())
 
 

@@ -9,6 +9,7 @@ file is no verdict on its sheet: whether that closes and its material holds is k
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,9 +20,11 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.assembly.nesting import LaidShape
 from kirigami_studio.export.dxf_reading import (
     FARTHEST_MM,
     FLATTEN_MM,
+    MOST_SHEETS,
     SHORTEST_MM,
     DxfContent,
     FilePath,
@@ -29,10 +32,11 @@ from kirigami_studio.export.dxf_reading import (
 )
 from kirigami_studio.export.file_content import MILLIMETRES
 from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRecord, piece_record_of, record_of
-from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
+from kirigami_studio.export.layer_files import MARK_GAP_MM, REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
 from kirigami_studio.export.profile import ARTWORK_LAYER, NAME_LAYER
-from kirigami_studio.export.provenance import AROUND, PROGRAM, SLOT_KERF, THROUGH
+from kirigami_studio.export.provenance import AROUND, BOX, PLACE, PROGRAM, SHEETS, SLOT_KERF, THROUGH
+from kirigami_studio.export.sheet_bed import place_of_text
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
@@ -46,6 +50,8 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.foundation.plain_text import plain_line
 
+#: A length of the box round a sheet, mm.
+BOX_NUMBER = re.compile(r"\d{1,4}\.\d{4}", re.ASCII)
 #: Kinds of file that an export has beside cut files.
 NO_CUT_FILES = frozenset({".pdf", ".png", ".gif", ".html", ".json", ".kiri", ".csv", ".txt"}) | frozenset(
     {".3mf", ".stl", ".obj", ".fold", ".xml", ".inp", ".geo"}
@@ -87,6 +93,8 @@ class FileReport:
     #: How the file says it was made; None for files of others, of earlier versions, and for damaged records.
     record: FileRecord | None = None
     of_pieces: PieceRecord | None = None  #: the same of a bed with the pieces of an assembly
+    sheets: tuple[FileReport, ...] = ()  #: of each sheet of a bed with those of several designs
+    place: LaidShape | None = None  #: where such a sheet lies, as the file has it
 
     @property
     def ok(self) -> bool:
@@ -111,6 +119,63 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         The file is missing or of another kind, or the kerf makes no sense.
     """
     content = _read(Path(path))
+    return (
+        _of_sheets(Path(path), content, kerf_mm) if SHEETS in content.facts else _judged(Path(path), content, kerf_mm)
+    )
+
+
+def _of_sheets(path: Path, content: DxfContent, kerf_mm: float | None) -> FileReport:
+    """Judge a file with sheets of several designs: each by itself, by its own record."""
+    problems = [*content.problems]
+    said = content.facts[SHEETS]
+    count = int(said) if said.isdecimal() and len(said) <= 4 else 0
+    boxes = [_box_of(content, number) for number in range(1, min(count, MOST_SHEETS) + 1)]
+    if not boxes or any(box is None for box in boxes):
+        problems.append(Problem.error("cut_file.sheets_differ", promised=plain_line(said, LONGEST_SAID)))
+        return _judged(path, replace(content, problems=problems), kerf_mm)
+    part = {"PART": content.facts["PART"]} if "PART" in content.facts else {}
+    shift = MARK_GAP_MM if part or path.is_dir() else 0.0
+    inside = [shapely.box(*box).buffer(SAME_POINT_MM, join_style="mitre") for box in boxes if box is not None]
+    inside = [shapely.transform(area, lambda points: points + shift) for area in inside]
+    paths: list[list[FilePath]] = [[] for _ in boxes]
+    for found in content.paths:
+        line = LineString(found.points)
+        at = next((number for number, area in enumerate(inside) if area.contains(line)), None)
+        if at is None:
+            x, y = found.points[0].tolist()
+            problems.append(Problem.error("cut_file.outside_sheet", (x, y)))
+            at = int(np.argmin([area.distance(line) for area in inside]))
+        paths[at].append(found)
+    reports = []
+    for number, own in enumerate(paths, start=1):
+        start = f"S{number}_"
+        facts = {key.removeprefix(start): text for key, text in content.facts.items() if key.startswith(start)}
+        layers = tuple(name for name in content.layers if any(one.layer == name for one in own))
+        sheet = replace(content, paths=own, facts=facts | part, layers=layers, problems=[])
+        place = place_of_text(facts.get(PLACE, ""), number - 1)
+        reports.append(replace(_judged(path, sheet, kerf_mm), place=place))
+    for report in reports:
+        problems += [problem for problem in report.problems if problem not in problems]
+    points = np.concatenate([found.points for found in content.paths] or [np.zeros((1, 2))])
+    width, height = np.ptp(points, axis=0).tolist()
+    pieces = [one.pieces for one in reports if one.pieces is not None]
+    ligaments = [one.min_ligament_mm for one in reports if one.min_ligament_mm is not None]
+    return FileReport(path, tuple(problems), content.unit, content.layers, sum(one.path_count for one in reports),
+                      sum(one.cut_length_mm for one in reports), sum(one.overlap_mm for one in reports),
+                      (width, height), reports[0].kerf_mm, sum(pieces) if len(pieces) == len(reports) else None,
+                      min(ligaments, default=None), sheets=tuple(reports))  # fmt: skip
+
+
+def _box_of(content: DxfContent, number: int) -> tuple[float, ...] | None:
+    """Left, bottom, right and top, mm, of a sheet of a file by its own record."""
+    words = content.facts.get(f"S{number}_{BOX}", "").split()
+    if len(words) != 4 or not all(BOX_NUMBER.fullmatch(word) for word in words):
+        return None
+    return tuple(map(float, words))
+
+
+def _judged(path: Path, content: DxfContent, kerf_mm: float | None) -> FileReport:
+    """Judge a file with one sheet, its copies, or pieces."""
     kerf, damaged = _kerf(content, kerf_mm)
     if purpose := content.facts.get("PURPOSE"):
         # Whatever else it has is meant for eyes.

@@ -15,6 +15,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -22,7 +23,7 @@ import numpy as np
 
 from kirigami_studio.export.profile import ARTWORK_LAYER, ENGRAVED_LAYERS, NAME_LAYER, find_profile
 from kirigami_studio.export.provenance import facts_of
-from kirigami_studio.export.strokes import Stroke, file_strokes, layer_colours, name_strokes
+from kirigami_studio.export.strokes import Stroke, file_strokes, layer_colours, name_strokes, total_length
 from kirigami_studio.fabricate.cut_path import arc_of
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.findings import Note
@@ -59,6 +60,8 @@ SAME_LENGTH = 5e-4
 CHORDS = 64
 #: Chords of a curve where the cuts of a project are checked.
 CURVE_CHORDS = 24
+#: Files that were read last are kept, by their bytes.
+KEPT_FILES = 4
 #: x and y of the four control points of a cubic Bezier curve, mm.
 Curve = tuple[float, ...]
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
@@ -92,7 +95,9 @@ def write_project(content: bytes, strokes: Sequence[Stroke], path: Path) -> None
     ExportError
         As :func:`write_lightburn`.
     """
-    meant = {name: sum(stroke.length for stroke in strokes if stroke.layer == name) for name in layer_colours(strokes)}
+    meant = {
+        name: total_length([stroke for stroke in strokes if stroke.layer == name]) for name in layer_colours(strokes)
+    }
 
     def verify(written: Path) -> None:
         found = layer_lengths(written)
@@ -331,22 +336,30 @@ def read_lightburn(content: bytes, path: Path) -> ProjectContent:
         No readable project, a shape on a layer without settings, or one that is no path.
     """
     try:
-        root = ElementTree.fromstring(content)
-        names = {_value(one, "index"): _value(one, "name") for one in root.findall("CutSetting[@type='Cut']")}
-        tools = {_value(one, "index") for one in root.findall("CutSetting[@type='Tool']")}
-        if root.tag != "LightBurnProject" or root.find(".//Shape//Shape") is not None:
-            raise ValueError("it is no project of plain paths")
-        shapes = [shape for shape in root.findall("Shape") if shape.get("CutIndex") not in tools]
-        paths = tuple(
-            ProjectPath(names[str(shape.get("CutIndex"))], np.array(_control_points(shape)).reshape(-1, 4, 2))
-            for shape in shapes
-        )
-        if not all(len(one.curves) and np.all(np.isfinite(one.curves)) for one in paths):
-            raise ValueError("a path has no length")
-        notes = root.find("Notes")
-        lines = "" if notes is None else str(notes.get("Notes"))
+        return _content(content)
     except (ElementTree.ParseError, KeyError, ValueError, IndexError, LookupError) as error:
         raise ExportError("lightburn.not_readable", path=path, reason=str(error)) from error
+
+
+@lru_cache(maxsize=KEPT_FILES)
+def _content(content: bytes) -> ProjectContent:
+    """Read a project; one that was read back is mostly verified next."""
+    root = ElementTree.fromstring(content)
+    names = {_value(one, "index"): _value(one, "name") for one in root.findall("CutSetting[@type='Cut']")}
+    tools = {_value(one, "index") for one in root.findall("CutSetting[@type='Tool']")}
+    if root.tag != "LightBurnProject" or root.find(".//Shape//Shape") is not None:
+        raise ValueError("it is no project of plain paths")
+    shapes = [shape for shape in root.findall("Shape") if shape.get("CutIndex") not in tools]
+    paths = tuple(
+        ProjectPath(names[str(shape.get("CutIndex"))], np.array(_control_points(shape)).reshape(-1, 4, 2))
+        for shape in shapes
+    )
+    if not all(len(one.curves) and np.all(np.isfinite(one.curves)) for one in paths):
+        raise ValueError("a path has no length")
+    for one in paths:
+        one.curves.setflags(write=False)
+    notes = root.find("Notes")
+    lines = "" if notes is None else str(notes.get("Notes"))
     facts: dict[str, str] = {}
     for line in lines.splitlines():
         if found := _FACT.fullmatch(line):
@@ -395,8 +408,10 @@ def _circle_curves(shape: ElementTree.Element) -> list[Curve]:
 
 
 def _length(curves: FloatArray) -> float:
-    """Length (mm) of cubic Bezier curves (C, 4, 2), each measured along its chords."""
-    return float(np.linalg.norm(np.diff(_weights(CHORDS), axis=0) @ curves, axis=2).sum())
+    """Length (mm) of cubic Bezier curves (C, 4, 2), each measured along its chords; straight ones have one."""
+    bent = np.any(curves[:, 1] != curves[:, 0], axis=1) | np.any(curves[:, 2] != curves[:, 3], axis=1)
+    straight = np.linalg.norm(curves[~bent, 3] - curves[~bent, 0], axis=1).sum()
+    return float(straight + np.linalg.norm(np.diff(_weights(CHORDS), axis=0) @ curves[bent], axis=2).sum())
 
 
 def _weights(chords: int) -> FloatArray:

@@ -390,8 +390,8 @@ def estimate(
     return _made(jam, phi, outcome, largest, judged, Source.ESTIMATE)
 
 
-def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tuple[int, int]:
-    """Panels to hold and to pull: where the softest motions of a pinned sheet are largest.
+def grips_on_pins(deployment: Deployment, settings: FabricationSettings, among: Sequence[int]) -> tuple[int, int]:
+    """Panels to hold and to pull: where the softest motions of a pinned sheet are largest, of some panels.
 
     Pins bend nothing and leave one motion, so that one of each is enough.
 
@@ -400,7 +400,7 @@ def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tupl
     FabricationError
         No such material.
     """
-    held, pulled = motions_on_pins(deployment, settings).order(2)
+    held, pulled = motions_on_pins(deployment, settings).order(2, among)
     return held, pulled
 
 

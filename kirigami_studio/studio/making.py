@@ -35,6 +35,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
+from kirigami_studio.project.sheet_size import sized
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     hold_options,
@@ -63,12 +64,13 @@ if TYPE_CHECKING:
     from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.print_files import PrintJob
+    from kirigami_studio.export.printed_pages import PrintedPages
     from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import PlanReport
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
-    from kirigami_studio.foundation.arrays import FloatArray
+    from kirigami_studio.foundation.arrays import ShapeRings
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.pipeline.request import Request
     from kirigami_studio.project.document import Document
@@ -154,6 +156,10 @@ class ExportedFiles:
     verdict: Verdict | None = None  #: On the sheet that a cut file holds; coupons and pictures have none
     files: tuple[Path, ...] = ()  #: All of them, in the order of writing
     pieces: MadePieces | None = None  #: Of a pinned design, which has no plan
+    #: Of a target of several parts, what was written of each; all else is of all of them, the verdict the worst.
+    parts: tuple[ExportedFiles, ...] = ()
+    part: str = ""  #: Name of the part that this is of; "" for the whole
+    work: Work | None = None  #: Length and time of all cuts of the sheets of several parts
 
     @property
     def ok(self) -> bool:
@@ -255,7 +261,7 @@ def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | 
     first: KirigamiError | None = None
     planned_at_least: Document | None = None
     for number in range(document.chosen or 0, len(document.candidates)):
-        chosen = replace(document, chosen=number)
+        chosen = sized(replace(document, chosen=number))
         request = CutRequest.of(chosen)
         try:
             made = pieces_of(request) if request.is_pinned else planned(request)
@@ -275,6 +281,14 @@ def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned | MadePiec
     """Plan the cuts, or the pieces of a pinned design, and check them."""
     importing.import_as_cut()
     yield pieces_of(request) if request.is_pinned else planned(request, cancel)
+
+
+def laying_pages(plan: CutPlan, paper: str, cancel: Cancel) -> Iterator[PrintedPages]:
+    """Lay a plan over pages of paper, as its PDF has them."""
+    importing.import_exporters()
+    from kirigami_studio.export.printed_pages import printed_pages
+
+    yield printed_pages(plan, paper)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -396,11 +410,12 @@ def pieces_of(request: CutRequest) -> MadePieces:
     if target is None:
         raise ProjectError("export.no_chosen_design")
     made = _with_artwork(assembled(request.candidate, settings, target), request.artwork, target)
-    shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
+    opened = made.plan.opened
+    shown = tuple(shapely.get_coordinates(ring)[:-1] for ring in (opened.exterior, *opened.interiors))
     verdict = judge_assembled(request.candidate, made, settings)
     job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
-    grips = grips_on_pins(made.assembly.deployment, settings)
-    names = [made.assembly.pieces[panel].id for panel in grips]
+    grips = grips_on_pins(made.assembly.deployment, settings, made.assembly.numbers.tolist())
+    names = [made.assembly.piece_on(panel).id for panel in grips]
     return MadePieces(made, replace(job, grips=(names[0], names[1])), verdict, grips)
 
 
@@ -423,7 +438,7 @@ def _with_artwork(made: Assembled, artwork: Artwork | None, target: Outline) -> 
     )
 
 
-def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> PrintJob:
+def _print_job(request: CutRequest, made: Assembled, shown: ShapeRings) -> PrintJob:
     from kirigami_studio.export.print_files import PrintJob
 
     settings = request.settings
@@ -441,7 +456,7 @@ def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> Print
     )
 
 
-def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdict: Verdict) -> AssemblyJob:
+def _assembly_job(request: CutRequest, made: Assembled, shown: ShapeRings, verdict: Verdict) -> AssemblyJob:
     from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.project.store import packed_design
 
@@ -848,8 +863,8 @@ def written(
         def judge(verifications: Sequence[Verification]) -> Verdict:
             return judged(request, made, as_cut, verifications)
 
-        gripped = replace(made.layers, grips=_grips_on_tiles(request, made))
-        folder, layers = _layers_written(gripped, output, judge, made.report.problems)
+        held = replace(made.layers, grips=_grips_on_tiles(request, made))
+        folder, layers = _layers_written(held, output, judge, made.report.problems)
         read = layers.verifications
         return ExportedFiles(folder, made, read, verdict=judge(read), files=layers.files)
     from kirigami_studio.export.export_set import export_all, placed
@@ -925,7 +940,7 @@ def exporting(
             return
     made = planned(request, cancel)
     size, paper = made.plan.copies.spread_mm, request.settings.paper
-    if output.has_pdf and not many_pages and (many := _many_pages(size, paper)):
+    if output.has_pdf and not many_pages and (many := many_pages_of(size, paper)):
         yield many
         return
 
@@ -941,7 +956,7 @@ def exporting(
     yield found
 
 
-def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
+def many_pages_of(size: tuple[float, float], paper: str) -> ManyPages | None:
     """Warning before a PDF (width, height; mm) of many pages is written; None for few."""
     from kirigami_studio.export.paper import page_notes, tile
 
@@ -963,7 +978,7 @@ def exporting_artwork(
         raise ProjectError("artwork.none")
     job, beds = printed_parts(request, cancel)
     works = [ArtworkJob.usual(request.artwork, job, bed) for bed in beds]
-    pages = [_many_pages(work.page_mm, request.settings.paper) for work in works]
+    pages = [many_pages_of(work.page_mm, request.settings.paper) for work in works]
     if not many_pages and any(pages):
         yield max(filter(None, pages), key=lambda many: many.pages)
         return

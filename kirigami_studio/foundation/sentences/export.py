@@ -355,6 +355,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "cut_file.name_cuts": mark(
         "The engraved name comes within {clear_mm:.3f} mm of a cut near ({x:.2f}, {y:.2f}) mm. Export it again."
     ),
+    "cut_file.sheets_differ": mark(
+        "The file says that it holds {promised} sheets, and not where each of them lies. Export again."
+    ),
     "cut_file.copies_differ": mark(
         "The file promises {promised:.20} copies of a sheet; those in it are not alike or not apart. Export it again."
     ),
@@ -458,6 +461,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "assembly.not_as_meant": mark("Nothing was written, for {name:.120} is not as it was meant: {finding}"),
     "verify.copies": mark(
         "The file holds {count} copies of the sheet, alike and {gap_mm:g} mm apart: cutting it leaves {pieces} pieces."
+    ),
+    "verify.sheets": mark("Sheets in the file: {count}, at least {gap_mm:g} mm apart."),
+    "verify.sheets_meet": mark(
+        "The sheets in the file should be {count}, at least {gap_mm:g} mm apart, and they meet. Export again."
+    ),
+    "parts.no_such_file": mark(
+        "A file of kind '{extension}' cannot hold the sheets of several parts; known are {known}. Choose a part for "
+        "other kinds."
     ),
     "verify.copies_differ": mark(
         "The file should hold {count} copies of the sheet, alike and {gap_mm:g} mm apart, and does not. Export again."

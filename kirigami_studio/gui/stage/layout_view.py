@@ -67,6 +67,7 @@ from kirigami_studio.gui.widgets.mismatch_items import (
     paint_mismatch,
     usual_chips,
 )
+from kirigami_studio.gui.widgets.readable import readable_width
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
@@ -518,7 +519,7 @@ class LayoutView(Canvas):
         if Overlay.GRIPS not in self.overlays:
             return []
         if self._pieces is not None and self._pieces.grips is not None:
-            held, pulled = (self._pieces.assembly.pieces[panel].id for panel in self._pieces.grips)
+            held, pulled = (self._pieces.assembly.piece_on(panel).id for panel in self._pieces.grips)
             return [
                 Chip((palette.text,), tr("hold {piece}", piece=held)),
                 Chip((palette.good,), tr("pull {piece}", piece=pulled)),
@@ -566,7 +567,7 @@ class LayoutView(Canvas):
             paint_dimension(
                 painter,
                 ends,
-                tr("{length_mm:.2f} mm", length_mm=length * self.mm_per_unit),
+                readable_width(length * self.mm_per_unit),
                 self.palette_,
                 occupied,
             )
