@@ -76,8 +76,8 @@ def pins_in_holes(deployment: Deployment, phi: float, shown: Polygon, cell_mm: f
 
 def kept_voids(panels: PanelTable, grid: tuple[int, int]) -> BoolArray:
     """Voids (m, n) with all four panels and pins."""
-    kept: BoolArray = np.isin(topology(*grid).void_nodes, panels.corners[panels.hinged]).all(axis=-1)
-    return kept
+    kept = np.isin(topology(*grid).void_nodes, panels.corners[panels.hinged])
+    return np.asarray(kept.all(axis=-1))
 
 
 def rim_loops(panels: PanelTable) -> list[IntArray]:
@@ -115,7 +115,7 @@ def rim_loops(panels: PanelTable) -> list[IntArray]:
 def _panels_of(voids: BoolArray, grid: tuple[int, int]) -> PanelTable:
     """Panels and pins of voids (m, n)."""
     every, hinged = all_panels(*grid), hinges_of(voids)
-    return every.at(hinged.any(axis=1), hinged)
+    return every.at(np.flatnonzero(hinged.any(axis=1)), hinged)
 
 
 def _left_by(trim: Trim, deployment: Deployment) -> PanelTable:
@@ -129,7 +129,7 @@ def _left_by(trim: Trim, deployment: Deployment) -> PanelTable:
             reached[number] &= near
     both = np.bincount(every.corners.ravel(), reached.ravel())[every.corners] > 1.0
     hinged = reached & both
-    return every.at(hinged.any(axis=1), hinged)
+    return every.at(np.flatnonzero(hinged.any(axis=1)), hinged)
 
 
 class _OpenHoles:

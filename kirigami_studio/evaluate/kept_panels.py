@@ -47,11 +47,10 @@ class PanelTable:
     #: (E, 4); nodes that may rest on the side after each corner, from beyond the slit there; -1 at the sheet's edge
     guests: IntArray
 
-    def at(self, places: IntArray | BoolArray, hinged: BoolArray) -> PanelTable:
+    def at(self, places: IntArray, hinged: BoolArray) -> PanelTable:
         """Panels of some places, with other shared corners (E, 4)."""
-        return PanelTable(
-            self.index[places], self.corners[places], hinged[places], self.even[places], self.guests[places]
-        )
+        other = replace(self, hinged=hinged)
+        return PanelTable(*(getattr(other, one.name)[places] for one in fields(self)))
 
 
 @cache
