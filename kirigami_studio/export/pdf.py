@@ -70,7 +70,7 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = Paper.NONE) -> None:
 
 
 def pages_of(plan: CutPlan, paper: str) -> Tiling:
-    """Lay a plan over pages of a paper, or on one page as large as it for "none"; raises as :func:`write_pdf` does."""
+    """Lay a plan over pages of a paper, or on one page as large as it for "none"."""
     return one_page(plan) if find_paper(paper) is None else tile(plan.copies.spread_mm, paper)
 
 

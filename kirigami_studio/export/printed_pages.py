@@ -1,4 +1,4 @@
-"""Pages of a plan for a printer: the lines and words of its PDF, recorded for whoever draws them on paper.
+"""Pages of a plan for a printer: the lines and words of its PDF, recorded to be drawn again.
 
 :class:`PageRecorder` has the methods of reportlab's canvas that :mod:`~kirigami_studio.export.pdf_pages` calls, so a
 printed page and a page of the PDF are drawn by the same code.
@@ -74,7 +74,7 @@ def printed_pages(plan: CutPlan, paper: str) -> PrintedPages:
     return PrintedPages(paper, tiling, tuple(recorder.pages))
 
 
-class _Path:
+class _RecordedPath:
     """A path of :class:`PageRecorder`."""
 
     def __init__(self) -> None:
@@ -116,15 +116,15 @@ class PageRecorder:
     def setFont(self, _: str, points: float) -> None:  # noqa: N802 - reportlab's name
         self._font = points
 
-    def beginPath(self) -> _Path:  # noqa: N802 - reportlab's name
-        return _Path()
+    def beginPath(self) -> _RecordedPath:  # noqa: N802 - reportlab's name
+        return _RecordedPath()
 
-    def drawPath(self, path: _Path) -> None:  # noqa: N802 - reportlab's name
+    def drawPath(self, path: _RecordedPath) -> None:  # noqa: N802 - reportlab's name
         points = np.array(path.points) * MM_PER_POINT
         self._strokes.append(PageStroke(points, path.closed, self._colour, self._width * MM_PER_POINT, self._dash))
 
     def line(self, *ends: float) -> None:
-        path = _Path()
+        path = _RecordedPath()
         path.points = [(ends[0], ends[1]), (ends[2], ends[3])]
         self.drawPath(path)
 
