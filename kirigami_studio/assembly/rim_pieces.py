@@ -17,10 +17,12 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.assembly.cut_away import kept_voids, rim_loops
 from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
 from kirigami_studio.assembly.shaping import OVERLAP, ZONE_CHORDS, Shaping, less, shared, united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.evaluate.kept_panels import PanelTable
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
 
 #: Parts smaller than this, mm2, are neither cut off nor added.
@@ -62,35 +64,57 @@ class EndState:
     shares: GeometryArray
 
     @classmethod
-    def of(cls, deployment: Deployment, phi: float, cell_mm: float, outline: Polygon, reach_mm: float) -> EndState:
-        """The state of a design at ``phi``."""
-        voids = polygons(as_plane(deployment.voids(phi)).reshape(-1, 4) * cell_mm)
-        voids = voids[shapely.area(voids) > LEAST_PART]
-        return cls(math.pi - phi, outline, shapely.union_all(voids), _rim_shares(deployment, phi, cell_mm, reach_mm))
+    def of(
+        cls,
+        deployment: Deployment,
+        panels: PanelTable,
+        phi: float,
+        cell_mm: float,
+        outline: Polygon,
+        reach_mm: float,
+    ) -> EndState:
+        """The state of some panels of a design at ``phi``; where others are cut away the flat sheet is open."""
+        nodes = as_plane(deployment.nodes(phi)) * cell_mm
+        voids = deployment.topology.void_nodes[kept_voids(panels, deployment.sheet.grid)]
+        openings = polygons(nodes[voids])
+        if phi == math.pi:
+            every = deployment.topology.panel_nodes.reshape(-1, 4)
+            openings = np.append(openings, polygons(nodes[np.delete(every, panels.index, axis=0)]))
+        openings = openings[shapely.area(openings) > LEAST_PART]
+        return cls(math.pi - phi, outline, shapely.union_all(openings), _rim_shares(nodes, panels, reach_mm))
 
 
-def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: float) -> GeometryArray:
-    """Panels at the rim with the strip outside of each, between bisectors of the rim's angles."""
-    tables, nodes = deployment.topology, as_plane(deployment.nodes(phi)) * cell_mm
-    panel_nodes = tables.panel_nodes.reshape(-1, 4)
-    side_owner = {
-        (int(corners[k - 1]), int(corners[k])): number for number, corners in enumerate(panel_nodes) for k in range(4)
-    }
-    loop = tables.outline_nodes
-    owner = np.array([side_owner[side] for side in zip(loop.tolist(), np.roll(loop, -1).tolist(), strict=True)])
-    start, end = nodes[loop], nodes[np.roll(loop, -1)]
-    # Sides inside of the outline are those of hinges that have zipped shut, and of closed mouths.
-    outline = Polygon(as_points(start)).buffer(0.0)
-    middle = shapely.points(as_points(0.5 * (start + end)))
-    outside = (np.abs(end - start) > TOUCHING) & (shapely.distance(outline.boundary, middle) < TOUCHING)
-    owner, start, end = owner[outside], start[outside], end[outside]
+def _rim_shares(nodes: ComplexArray, panels: PanelTable, reach_mm: float) -> GeometryArray:
+    """Panels at rims, those of holes too, with the strip outside of each, between bisectors of the rim's angles."""
+    shares = np.full(len(panels.index), Polygon(), dtype=object)
+    for loop in rim_loops(panels):
+        owner, corner = loop.T
+        start, end = nodes[panels.corners[owner, corner]], nodes[panels.corners[owner, (corner + 1) % 4]]
+        # Sides inside of the outline are those of hinges that have zipped shut, and of closed mouths.
+        outline = Polygon(as_points(start)).buffer(0.0)
+        middle = shapely.points(as_points(0.5 * (start + end)))
+        outside = (np.abs(end - start) > TOUCHING) & (shapely.distance(outline.boundary, middle) < TOUCHING)
+        if len(np.unique(owner[outside])) > 1:
+            _add_shares(shares, nodes, panels, reach_mm, owner[outside], start[outside], end[outside])
+    return shares
+
+
+def _add_shares(
+    shares: GeometryArray,
+    nodes: ComplexArray,
+    panels: PanelTable,
+    reach_mm: float,
+    owner: IntArray,
+    start: ComplexArray,
+    end: ComplexArray,
+) -> None:
+    """Add to the shares of panels those at one rim, whose sides (L,) run from ``start`` to ``end``."""
     first = int(np.argmax(owner != np.roll(owner, 1)))
     owner, start, end = (np.roll(values, -first) for values in (owner, start, end))
     breaks = np.flatnonzero(owner != np.roll(owner, 1))
     outward = -1j * (end - start) / np.abs(end - start)
     between = outward[breaks] + outward[breaks - 1]
     ray = reach_mm * between / np.maximum(np.abs(between), TOUCHING)
-    shares = np.full(len(panel_nodes), Polygon(), dtype=object)
     for place, (begin, after) in enumerate(zip(breaks, np.append(breaks[1:], len(owner)), strict=True)):
         chain = np.append(start[begin:after], end[after - 1])
         rays = chain[0] + np.array([0.0, ray[place]]), chain[-1] + np.array([0.0, ray[(place + 1) % len(breaks)]])
@@ -101,9 +125,8 @@ def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: fl
         else:
             far = np.array([rays[1][1], rays[0][1]])
         strip = shapely.make_valid(Polygon(as_points(np.append(chain, far))))
-        panel = Polygon(as_points(nodes[panel_nodes[owner[begin]]]))
+        panel = Polygon(as_points(nodes[panels.corners[owner[begin]]]))
         shares[owner[begin]] = shapely.union_all([shares[owner[begin]], strip, panel.buffer(OVERLAP)])
-    return shares
 
 
 def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
@@ -119,8 +142,9 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
     Returns
     -------
     lost : float, mm2
-        Of the panels.
+        Of the panels; what is cut along the rim of a hole does not count, for the flat sheet is open there, too.
     """
+    holes = np.array([shapely.union_all([Polygon(ring) for ring in state.outline.interiors])], dtype=object)
     motion, keep = shaping.motion, shaping.options.keep_mm
     outside = shapely.area(shapely.difference(shaping.placed(state.turn), state.outline))
     panels = polygons(motion.corners)
@@ -132,8 +156,11 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
         mine = motion.brought_back(np.array([state.outline], dtype=object), here, state.turn)[0]
         body = shaping.bodies[index]
         walls = shapely.union_all(discs(motion.corners[index][motion.hinged[index]], keep))
-        for one in _cut(shaping, index, mine, united(shared(body, mine), shared(body, walls))):
-            price = shared(less(body, one), panels[index]).area
+        hole = motion.brought_back(holes, here, state.turn)[0]
+        in_hole = shared(body, hole).area > LEAST_PART
+        counts = less(panels[index], hole) if in_hole else panels[index]
+        for one in _cut(shaping, index, mine, united(shared(body, mine), shared(body, walls)), in_hole):
+            price = shared(less(body, one), counts).area
             if lost + price <= spare:
                 lost += price
                 shaping.bodies[index] = one
@@ -141,7 +168,9 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
     return lost
 
 
-def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry) -> Iterator[Polygon]:
+def _cut(
+    shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry, to_necks: bool = False
+) -> Iterator[Polygon]:
     """Bodies of a piece cut along an outline, its outer pins joined, then farther and farther.
 
     Parameters
@@ -152,14 +181,19 @@ def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry)
         The outline's area, seen from the piece.
     wanted : geometry
         What of the piece is in it, and its walls.
+    to_necks : bool
+        Whether necks alone may stay.
     """
     motion, body = shaping.motion, shaping.bodies[index]
     whole = shaping.held_together(index, wanted)
-    if whole is None:
-        pins = as_points(motion.corners[index][motion.hinged[index]])
-        links = shortest_links(body, pins, mine, 0.5 * float(shaping.neck_mm[index]))
-        whole = shaping.held_together(index, united(wanted, shared(body, links)))
-    if whole is not None and whole.area >= LEAST_KEPT * body.area:
+    pins, half = as_points(motion.corners[index][motion.hinged[index]]), 0.5 * float(shaping.neck_mm[index])
+    # In a hole they are nowhere hidden: as near to its rim as there is a way.
+    for beyond in (*BEYOND_MM, math.inf) if to_necks else (math.inf,):
+        if whole is None:
+            room = body if beyond == math.inf else shared(body, united(wanted, mine.buffer(beyond)))
+            links = shortest_links(room, pins, mine, half)
+            whole = shaping.held_together(index, united(wanted, shared(body, links)))
+    if whole is not None and (to_necks or whole.area >= LEAST_KEPT * body.area):
         yield whole
     for beyond in BEYOND_MM:
         whole = shaping.held_together(index, united(wanted, shared(body, mine.buffer(beyond))))
@@ -167,14 +201,14 @@ def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry)
             yield whole
 
 
-def shortest_links(body: Polygon, pins: FloatArray, inside: BaseGeometry, half_mm: float) -> BaseGeometry:
+def shortest_links(body: BaseGeometry, pins: FloatArray, inside: BaseGeometry, half_mm: float) -> BaseGeometry:
     """Necks that join the pins of a piece and its largest part in an area, the shortest outside.
 
     They follow the middles of the sides of triangles that the piece is divided in, where it has a neck's width.
 
     Parameters
     ----------
-    body : Polygon
+    body : geometry
     pins : (K, 2) float, mm
     inside : geometry
     half_mm : float
@@ -271,7 +305,7 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
         missing = missing.buffer(-seam, join_style="mitre").buffer(seam, join_style="mitre")
     gaps = shapely.get_parts(missing)
     gaps = gaps[shapely.area(gaps) > LEAST_PART]
-    rims = shapely.intersects(gaps, state.outline.exterior)
+    rims = shapely.intersects(gaps, state.outline.boundary)
     for by_shares in (True, False):
         piece, gap = shapely.STRtree(gaps).query(shaping.placed(state.turn), predicate="dwithin", distance=TOUCHED)
         worth = np.bincount(piece, shapely.area(gaps)[gap], len(placed))

@@ -40,11 +40,11 @@ from kirigami_studio.studio.making import (
     Output,
     Planned,
     animating,
-    exporting,
     exporting_artwork,
     exporting_coupon,
     planning,
 )
+from kirigami_studio.studio.part_sheets import exporting_all
 
 if TYPE_CHECKING:
     from kirigami_studio.studio.verdict import Verdict
@@ -84,6 +84,7 @@ class CutPlanner(QObject):
         session.display.settled.connect(self.plan_soon)
         session.fabrication_changed.connect(self.plan_soon)
         session.document_changed.connect(self._take_name)
+        session.document_changed.connect(self._take_artwork)
 
     @property
     def request(self) -> CutRequest | None:
@@ -107,6 +108,15 @@ class CutPlanner(QObject):
             return
         now = self.request
         if now is not None and now.candidate is before.candidate and now.name != before.name:
+            self.plan_soon()
+
+    def _take_artwork(self, document: Document) -> None:
+        """Plan pieces again that get other lines engraved."""
+        before = self._wanted
+        if before is None or not before.has_layers:
+            return
+        now = self.request
+        if now is not None and now.candidate is before.candidate and now.artwork != before.artwork:
             self.plan_soon()
 
     def close(self) -> None:
@@ -170,7 +180,7 @@ class DesignExporter(QObject):
             return
         if kind_of(path.suffix).cuts:
             self._preferences.remember(session.document)
-        self._write_pages(name, status, partial(exporting, self._with_as_cut(request), Output(path)))
+        self._write_pages(name, status, partial(exporting_all, self._with_as_cut(request), Output(path)))
 
     def export_all(self, folder: Path, name: str) -> None:
         """Write everything that there is of the design into a folder."""
@@ -178,7 +188,7 @@ class DesignExporter(QObject):
             return
         request = self._planner.request
         if request is not None:
-            steps = partial(exporting, self._with_as_cut(request), Output(folder, name, record=True))
+            steps = partial(exporting_all, self._with_as_cut(request), Output(folder, name, record=True))
             status = tr("Exporting to {name} …", name=folder.name)
             self._write_pages(tr("exporting to {name}", name=folder.name), status, steps)
 
@@ -231,7 +241,10 @@ class DesignExporter(QObject):
 
     def _report(self, exported: ExportedFiles) -> None:
         path, made = exported.path, exported.planned
-        if exported.pieces is not None:
+        if exported.parts:
+            self._session.set_status(tr("Exported {path}.", path=path))
+            message = message_of_parts(path, exported)
+        elif exported.pieces is not None:
             self._session.set_status(tr("Exported {path}.", path=path))
             message = message_of_pieces(path, exported.pieces, exported.verdict)
         elif made is None:
@@ -325,6 +338,28 @@ def message_of(path: Path, made: Planned, verdict: Verdict | None) -> Message:
         return Message(sentence, Tone.DONE, details)
     sentence = tr("{name} exported, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
     return Message(sentence, Tone.WARNING, details)
+
+
+def message_of_parts(path: Path, exported: ExportedFiles) -> Message:
+    """Say what the files of all parts hold; the part that does worst decides."""
+    name = tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name
+    lines = [str(path)]
+    for part in exported.parts:
+        lines += [part.part, *(() if part.verdict is None else part.verdict.lines)]
+    found = [part for part in exported.parts if part.verdict is not None and part.verdict.problems]
+    if found:
+        worst = next((part for part in found if part.verdict == exported.verdict), found[0])
+        assert worst.verdict is not None  # that is how they were found
+        level, text = worst.verdict.level_words, worst.verdict.problems[0].text
+        sentence = tr("{name} exported. {part}: {level}: {text}", name=name, part=worst.part, level=level, text=text)
+        return Message(sentence, Tone.WARNING, "\n".join(lines))
+    sentence = tr_n(
+        "{name} exported and checked: {count} sheet, no faults.",
+        "{name} exported and checked: {count} sheets, no faults.",
+        len(exported.parts),
+        name=name,
+    )
+    return Message(sentence, Tone.DONE, "\n".join(lines))
 
 
 def message_of_pieces(path: Path, pieces: MadePieces, verdict: Verdict | None) -> Message:

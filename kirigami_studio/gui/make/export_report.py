@@ -172,9 +172,12 @@ class ExportReport(QDialog):
 
 def label(verification: Verification) -> str:
     """A line of the list of files: the verdict, then the file's name."""
+    name = verification.path.name
+    if verification.sheet:
+        name = tr("{name}, {part}", name=name, part=verification.sheet)
     if verification.ok:
-        return tr("Verified  ·  {name}", name=verification.path.name)
-    return tr("Do not cut  ·  {name}", name=verification.path.name)
+        return tr("Verified  ·  {name}", name=name)
+    return tr("Do not cut  ·  {name}", name=name)
 
 
 def verdict(verification: Verification) -> str:

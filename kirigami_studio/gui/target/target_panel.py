@@ -142,10 +142,11 @@ class TargetPanel(Card):
         self.facts, self.size_ = ElidedLabel(), label()
         self.notes = label(name="warning", wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.reach, self.start_refusal = ElidedLabel(), ElidedLabel()
+        self.reach, self.start_refusal, self.limit = ElidedLabel(), ElidedLabel(), ElidedLabel()
         self.reach.setAccessibleName(tr("Details that the grid may miss"))
         self.start_refusal.setAccessibleName(tr("Why the next run would refuse the start"))
-        for warning in (self.reach, self.start_refusal):
+        self.limit.setAccessibleName(tr("What no closed sheet shows of the target"))
+        for warning in (self.reach, self.start_refusal, self.limit):
             warning.setObjectName("warning")
             warning.setVisible(False)
         self.threshold, self.start, self.opened = ThresholdBar(), StartTile(), OpenedSizeRow()
@@ -156,7 +157,7 @@ class TargetPanel(Card):
         self.body.addWidget(self.tools)
         self.body.addLayout(row(self.start, (self.view, 1), spacing=8), 1)
         self.body.addLayout(row((self.facts, 1), self.size_))
-        warnings = (self.start_refusal, self.reach)
+        warnings = (self.start_refusal, self.reach, self.limit)
         for part in (self.opened, *warnings, self.fill, self.refine, self.threshold, self.notes, self.loose):
             self.body.addWidget(part)
         self.view.context.selection_changed.connect(self._show_selection)
@@ -283,6 +284,12 @@ class TargetPanel(Card):
         """Say why the next run would refuse the start; nothing where it would not, or that is not known."""
         self.start_refusal.setText(sentence, tr("The start folds on this grid"))
         self.start_refusal.setVisible(bool(sentence))
+
+    def show_limit(self, sentence: str) -> None:
+        """Say what no closed sheet shows of the target; "" for nothing."""
+        self.limit.setText(sentence)
+        self.limit.setToolTip(sentence)
+        self.limit.setVisible(bool(sentence))
 
     def _show_reach_text(self) -> None:
         whole, brief = self._reach_texts

@@ -200,6 +200,7 @@ class Dialogs(QObject):
             session = self._services.session
             self.parts = PartPicker(self._window, self._services.session.queue)
             self.parts.taken.connect(lambda outline, usual: self._on_parts(outline, usual))
+            self.parts.pieces_taken.connect(self._services.targeting.reader.take_pieces)
             self.parts.rejected.connect(lambda: session.set_status(tr("No part was taken; nothing changed.")))
         self._on_parts = take
         self.parts.begin(read, purpose)
