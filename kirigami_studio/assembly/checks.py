@@ -16,6 +16,7 @@ from kirigami_studio.assembly.nesting import smallest_rectangle
 from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.pinned import PinnedPlan
+from kirigami_studio.assembly.rim_pieces import silhouette
 from kirigami_studio.assembly.shaping import united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.fabricate.findings import Problem, Severity
@@ -111,14 +112,14 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
     panels = shapely.area(shapely.polygons(assembly.deployment.panels(math.pi).reshape(-1, 4, 2) * assembly.cell_mm))
     kept = shapely.area(bodies) / panels
     apart, pair = pins_apart(assembly.deployment, [hinge.node for hinge in assembly.hinges], assembly.cell_mm, phi)
-    silhouette, flat_silhouette = filled(opened), filled(flat)
+    shown, flat_shown = silhouette(opened), silhouette(flat)
     figures = PinnedFigures(
-        match=iou(silhouette, plan.opened),
-        flat_match=iou(flat_silhouette, plan.flat),
+        match=iou(shown, plan.opened),
+        flat_match=iou(flat_shown, plan.flat),
         covered=float(plan.opened.intersection(opened).area / plan.opened.area),
         flat_covered=float(plan.flat.intersection(flat).area / plan.flat.area),
-        lost_flat=float(plan.flat.difference(flat_silhouette).area / plan.flat.area),
-        beyond_flat=float(flat_silhouette.difference(plan.flat).area / plan.flat.area),
+        lost_flat=float(plan.flat.difference(flat_shown).area / plan.flat.area),
+        beyond_flat=float(flat_shown.difference(plan.flat).area / plan.flat.area),
         gap_mm=plan.gap_mm,
         pins_apart_mm=apart,
         wall_mm=min(walls),
@@ -165,7 +166,7 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
             )
         )
     if figures.match < LEAST_MATCH:
-        missing, beyond = plan.opened.difference(silhouette).area, silhouette.difference(plan.opened).area
+        missing, beyond = plan.opened.difference(shown).area, shown.difference(plan.opened).area
         problems.append(
             Problem.warning(
                 "pinned.target_missed",
@@ -308,11 +309,6 @@ def pins_apart(deployment: Deployment, nodes: Sequence[int], cell_mm: float, phi
     nearest = int(np.argmin(least))
     pair = [int(index[one[nearest]]), int(index[other[nearest]])]
     return math.sqrt(max(float(least[nearest]), 0.0)), pair
-
-
-def filled(shape: BaseGeometry) -> BaseGeometry:
-    """The shape with its holes: silhouettes are compared like this."""
-    return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(shape)])
 
 
 def iou(one: BaseGeometry, other: BaseGeometry) -> float:

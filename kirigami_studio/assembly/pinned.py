@@ -24,8 +24,9 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
 
-#: How much of what the flat outline can spare pieces may stick out of it: the rest is for gaps that nothing fills.
-MOST_BEYOND = 0.7
+#: How much of what the flat outline can spare it may lose where pieces are cut, and how much of the rest they may stick
+#: out of it.
+MOST_LOST, MOST_BEYOND = 0.6, 0.9
 #: Width of a character of a label, in its heights.
 CHARACTER = 0.7
 
@@ -103,17 +104,20 @@ def pinned(
     shown = Polygon(pose.inverse().apply(target.points) * cell_mm)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
     with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
-        shaping = Shaping.of(deployment, cell_mm, phi, options)
+        needless = () if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, shown)
+        shaping = Shaping.of(deployment, cell_mm, phi, options, needless)
         if only_whole and shaping.broken:
             first = piece_names(shaping.motion)[min(shaping.broken)]
             raise FabricationError("pinned.falls_apart", piece=first, count=len(shaping.broken))
         opened = EndState.of(deployment, phi, cell_mm, shown, options.reach_mm)
         closed = EndState.of(deployment, math.pi, cell_mm, flat, options.reach_mm)
         spare = (1.0 - options.least_flat) * flat.area
-        spare -= trim_to(shaping, opened, spare if options.weight >= 0.5 else 0.0)
-        trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
-        extend_to(shaping, opened, closed, MOST_BEYOND * spare)
+        trim_to(shaping, opened, closed, MOST_LOST * spare if options.weight >= 0.5 else 0.0)
+        trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+        extend_to(shaping, opened, closed, 0.0)
         extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+        if options.weight > 0.5:
+            extend_to(shaping, opened, closed, MOST_BEYOND * (spare - closed.missing(shaping)))
         round_off(shaping, (opened, closed))
     assembly = assembled(shaping, deployment, cell_mm, phi)
     names = [piece.id for piece in assembly.pieces]
@@ -133,6 +137,14 @@ def pinned(
         (float(at.real), float(at.imag)),
         -(-int(np.count_nonzero(tight)) // alike),
     )
+
+
+def _nodes_outside(deployment: Deployment, phi: float, cell_mm: float, outline: Polygon) -> list[int]:
+    """Nodes with pins outside of an outline at ``phi``, the farthest first."""
+    nodes = np.unique(deployment.topology.void_nodes)
+    far = shapely.distance(outline, shapely.points(deployment.nodes(phi)[nodes] * cell_mm))
+    order = np.argsort(-far, kind="stable")
+    return [int(node) for node in nodes[order[: np.count_nonzero(far)]]]
 
 
 def _start_outline(deployment: Deployment) -> FloatArray:

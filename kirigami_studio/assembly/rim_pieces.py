@@ -32,6 +32,9 @@ LEAST_KEPT = 0.3
 #: Middles of necks between pins outside of an outline keep so much of half a neck to the edge; the necks are so much
 #: wider than asked for; and ways inside of the outline cost this share.
 CLEAR_OF_EDGE, WIDER, INSIDE = 0.98, 1.05, 0.05
+#: How much area may be cut off where that leaves gaps inside of the other state's silhouette, relative to what the
+#: silhouette itself may lose.
+GAPS = 2.0
 #: Nicks at the rim that are narrower than twice this, mm, are filled.
 NICK = 2.5
 #: What is nearer than this, mm, touches.
@@ -67,6 +70,15 @@ class EndState:
         voids = polygons(as_plane(deployment.voids(phi)).reshape(-1, 4) * cell_mm)
         voids = voids[shapely.area(voids) > LEAST_PART]
         return cls(math.pi - phi, outline, shapely.union_all(voids), _rim_shares(deployment, phi, cell_mm, reach_mm))
+
+    def missing(self, shaping: Shaping) -> float:
+        """Area, mm2, of the outline that lies outside of the silhouette of all pieces, holes filled."""
+        return float(less(self.outline, silhouette(united(*shaping.placed(self.turn)))).area)
+
+
+def silhouette(shape: BaseGeometry) -> BaseGeometry:
+    """The shape with its holes filled."""
+    return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(shape)])
 
 
 def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: float) -> GeometryArray:
@@ -106,25 +118,21 @@ def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: fl
     return shares
 
 
-def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
+def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) -> None:
     """Cut pieces along the outline of a state, the farthest outside first; keep all walls.
 
     Parameters
     ----------
     shaping : Shaping
     state : EndState
+    other : EndState
+        The other end, where what is cut off is missing.
     spare : float, mm2
-        How much of the panels may be lost; ears do not count.
-
-    Returns
-    -------
-    lost : float, mm2
-        Of the panels.
+        How much the silhouette there may lose; gaps inside of it count less, see :data:`GAPS`.
     """
     motion, keep = shaping.motion, shaping.options.keep_mm
     outside = shapely.area(shapely.difference(shaping.placed(state.turn), state.outline))
-    panels = polygons(motion.corners)
-    lost = 0.0
+    shown = _Shown(shaping, other) if math.isfinite(spare) else None
     for index in np.argsort(-outside):
         if outside[index] < LEAST_PART:
             break
@@ -133,12 +141,53 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
         body = shaping.bodies[index]
         walls = shapely.union_all(discs(motion.corners[index][motion.hinged[index]], keep))
         for one in _cut(shaping, index, mine, united(shared(body, mine), shared(body, walls))):
-            price = shared(less(body, one), panels[index]).area
-            if lost + price <= spare:
-                lost += price
+            if shown is None or shown.gives(index, less(body, one), spare):
                 shaping.bodies[index] = one
                 break
-    return lost
+
+
+class _Shown:
+    """What all pieces show in a state, holes filled, and what it loses while they are cut.
+
+    Attributes
+    ----------
+    lost : float, mm2
+        Of the state's outline, by what was cut so far.
+    bare : float, mm2
+        Of the area of pieces, where no other piece lies.
+    """
+
+    def __init__(self, shaping: Shaping, state: EndState) -> None:
+        self._shaping, self._state = shaping, state
+        self._placed = shaping.placed(state.turn)
+        self._near = shapely.STRtree(self._placed)
+        self._whole = united(*self._placed)
+        self._missed = self._missing(self._whole)
+        self.lost = self.bare = 0.0
+
+    def gives(self, index: int, cut: BaseGeometry, spare: float) -> bool:
+        """Cut an area (flat sheet) off a piece if the silhouette can spare it; whether it was cut."""
+        here = np.array([index])
+        placed = self._shaping.motion.placed(np.array([cut], dtype=object), here, self._state.turn)[0]
+        beside = self._near.query(placed, predicate="intersects")
+        bare = less(placed, united(*self._placed[beside[beside != index]]))
+        if self.bare + bare.area > GAPS * spare:
+            return False
+        whole, missed = self._whole, self._missed
+        if bare.area >= LEAST_PART:
+            whole = less(whole, bare)
+            missed = self._missing(whole)
+        if missed - self._missed > spare - self.lost:
+            return False
+        self.lost += missed - self._missed
+        self.bare += bare.area
+        self._whole, self._missed = whole, missed
+        self._placed[index] = less(self._placed[index], placed)
+        return True
+
+    def _missing(self, whole: BaseGeometry) -> float:
+        """Area of the outline that shows nothing."""
+        return float(less(self._state.outline, silhouette(whole)).area)
 
 
 def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry) -> Iterator[Polygon]:
@@ -159,7 +208,8 @@ def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry)
         pins = as_points(motion.corners[index][motion.hinged[index]])
         links = shortest_links(body, pins, mine, 0.5 * float(shaping.neck_mm[index]))
         whole = shaping.held_together(index, united(wanted, shared(body, links)))
-    if whole is not None and whole.area >= LEAST_KEPT * body.area:
+        whole = None if whole is None or whole.area < LEAST_KEPT * body.area else whole
+    if whole is not None:
         yield whole
     for beyond in BEYOND_MM:
         whole = shaping.held_together(index, united(wanted, shared(body, mine.buffer(beyond))))

@@ -110,30 +110,58 @@ class Shaping:
         self.bodies = np.full(len(self.motion.layer), Polygon(), dtype=object)
 
     @classmethod
-    def of(cls, deployment: Deployment, cell_mm: float, phi_target: float, options: PinOptions) -> Shaping:
+    def of(
+        cls,
+        deployment: Deployment,
+        cell_mm: float,
+        phi_target: float,
+        options: PinOptions,
+        needless: Sequence[int] = (),
+    ) -> Shaping:
         """Panels with ears, less what the ears of their neighbours sweep.
 
         Pins without wall or neck are left out as long as the sheet keeps its one motion: their ears cut nothing then.
+        So are those at ``needless`` nodes, the first ones first: after them, or before them where that leaves fewer
+        necks narrow.
         """
         motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane)
+        known: dict[_Notching, _Notched] = {}
+        made = cls._made(deployment, motion, options, known)
+        fewer = made.motion.without(needless)
+        if fewer is not made.motion:
+            made = min(cls._made(deployment, fewer, options, known), made, key=lambda one: one.faults)
+        sooner = motion.without(needless) if made.faults else motion
+        if sooner is not motion:
+            made = min(made, cls._made(deployment, sooner, options, known), key=lambda one: one.faults)
+        return made
+
+    @classmethod
+    def _made(
+        cls, deployment: Deployment, motion: LayerMotion, options: PinOptions, known: dict[_Notching, _Notched]
+    ) -> Shaping:
+        """Leave out pins until all have walls and necks, or the motion is lost without another."""
         made = cls(motion, options)
         blanks = polygons(motion.corners)
         if options.in_one_plane:  # any two sides may meet
             blanks = shapely.buffer(blanks, -0.5 * options.clearance_mm, join_style="mitre")
         else:
             blanks = _less(blanks, made._rubbing_sides(deployment))
-        known: dict[_Notching, _Notched] = {}
         made._begin(blanks, known)
         for _ in range(ROUNDS):
-            fewer = motion.without(made.weak)
+            fewer = motion.without(sorted(made.weak))
             if fewer is motion:
-                fewer = motion.without(made.cutting)
+                fewer = motion.without(sorted(made.cutting))
             if fewer is motion:
                 break
             motion = fewer
             made = cls(motion, options)
             made._begin(blanks, known)
         return made
+
+    @property
+    def faults(self) -> int:
+        """How many pieces fall apart, and pins have no wall or cut a neck."""
+        return len(self.broken) + len(self.weak) + len(self.cutting)
 
     def _begin(self, blanks: GeometryArray, known: dict[_Notching, _Notched]) -> None:
         """Cut the notches; straps that cut a piece through go, then ears become smaller.
