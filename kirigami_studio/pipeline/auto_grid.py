@@ -39,8 +39,10 @@ from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_
 
 #: Fewest rows and columns, and most unless another limit is asked for.
 COARSEST, FINEST = 6, 16
-#: The same of pinned sheets, and most panels of these: somebody has to put their pieces together.
-COARSEST_PINNED, FINEST_PINNED, MOST_PIECES = 3, 14, 91
+#: The same of pinned sheets, whose pieces somebody has to put together.
+COARSEST_PINNED, FINEST_PINNED = 3, 10
+#: Most rows of upright ones, and most panels.
+HIGHEST, MOST_PIECES = 14, 91
 #: Distances between pins (unit cells) that sheets have room for.
 MOST_GAP = 0.375
 #: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
@@ -65,8 +67,8 @@ FINER_BETWEEN, FINER_GAIN = (0.95, 0.975), 0.005
 FINER_LIMIT, FINER_PANELS = 24, 312
 #: Poses of each grid that are tried, and the steps of each fit.
 TRIED_POSES = 2
-#: The same of pinned sheets, and how many of their grids are tried.
-TRIED_POSES_PINNED, MOST_TRIED_PINNED = 6, 3
+#: The same of pinned sheets that may be upright, and how many of their grids are tried.
+UPRIGHT_POSES, UPRIGHT_TRIED = 6, 3
 TRIAL = (FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
@@ -197,6 +199,7 @@ def choose_grid(
     limit: int = FINEST,
     start: StartShape = RECTANGLE,
     least_gap_mm: float = 0.0,
+    upright: bool = False,
 ) -> GridChoice:
     """The coarsest grid that is expected to match a target, or the one that is expected to match it best.
 
@@ -216,6 +219,8 @@ def choose_grid(
         round one needs enough chords.
     least_gap_mm : float
         How far apart pins stay, which has to fit into the cells; 0 for sheets without.
+    upright : bool
+        Whether pinned sheets for long shapes may be high: their width limits the number of cells.
 
     Raises
     ------
@@ -232,10 +237,10 @@ def choose_grid(
     coarsest = COARSEST
     if pinned:
         smallest = min(smallest, MOST_GAP * width_mm / least_gap_mm)
-        coarsest, limit = COARSEST_PINNED, min(limit, FINEST_PINNED)
-    found = list(_candidates(target, figures, poses, limit, start, coarsest=coarsest, upright=pinned))
+        coarsest, limit = COARSEST_PINNED, min(limit, HIGHEST if upright else FINEST_PINNED)
+    found = list(_candidates(target, figures, poses, limit, start, coarsest=coarsest, upright=upright))
     found = found or _nearest(target, figures, poses, limit, start)
-    if pinned:
+    if upright:
         found = [one for one in found if one.panels <= MOST_PIECES] or [min(found, key=lambda one: one.panels)]
     most_error = MOST_START_ERROR_PINNED if pinned else MOST_START_ERROR
     found = [one for one in found if one.start_error <= most_error] or [min(found, key=lambda one: one.start_error)]
@@ -275,6 +280,7 @@ def predicted_for(request: Request) -> GridChoice:
         FINEST,
         request.start,
         request.least_gap_mm,
+        request.upright,
     )
 
 
@@ -315,16 +321,16 @@ def known_for(request: Request) -> GridChoice:
 def _key(request: Request) -> Hashable:
     """What a choice depends on."""
     sheet = (request.width_mm, request.least_feature_mm, request.least_gap_mm, request.fit_options.free_rim)
-    return request.target, request.phi, request.symmetry, request.start, *sheet
+    return request.target, request.phi, request.symmetry, request.start, request.upright, *sheet
 
 
 def _tried(request: Request, trials: Trials) -> GridChoice:
     target, start, symmetry = request.silhouette, request.start, request.symmetry
     choice = predicted_for(request)
-    if request.pinned:
-        return _tried_pinned(request, choice, trials)
+    if request.upright:
+        return _tried_upright(request, choice, trials)
     hard = choice.code in ("grid.best_expected", "grid.finer_for_holes") and choice.predicted_match < TRIED_BELOW
-    if not hard or not choice.poses or choice.poses[0].angle is None:
+    if not hard or request.pinned or not choice.poses or choice.poses[0].angle is None:
         return choice
     poses = _poses(target, symmetry, start)
     figures, least_feature = ShapeFigures.of(target), request.least_feature_mm
@@ -356,10 +362,10 @@ def _tried(request: Request, trials: Trials) -> GridChoice:
     return GridChoice(best.grid, tuple(kept), best.match, code, tuple(fields.items()))
 
 
-def _tried_pinned(request: Request, choice: GridChoice, trials: Trials) -> GridChoice:
+def _tried_upright(request: Request, choice: GridChoice, trials: Trials) -> GridChoice:
     """The grid of a pinned sheet: of as many pieces, square or upright, whichever short fits match better.
 
-    Pins are left out of account: of nine silhouettes the best of short fits have the grid of the best pinned ones.
+    Pins are left out of account: of seven silhouettes the best short fits have the grid of the best pinned ones.
     """
     target, start = request.silhouette, request.start
     if choice.predicted_match >= TRIED_BELOW or not start.is_plain:
@@ -368,13 +374,13 @@ def _tried_pinned(request: Request, choice: GridChoice, trials: Trials) -> GridC
     least = request.least_feature_mm
     widest = MOST_GAP * request.width_mm / request.least_gap_mm
     widest = min(widest, SMALLEST_SHARE * request.width_mm / least) if least > 0.0 else widest
-    sized = {"coarsest": COARSEST_PINNED, "upright": True}
+    figures = ShapeFigures.of(target)
     near = [
         one
-        for one in _candidates(target, ShapeFigures.of(target), poses, FINEST_PINNED, start, **sized)
+        for one in _candidates(target, figures, poses, HIGHEST, start, coarsest=COARSEST_PINNED, upright=True)
         if one.width <= widest and one.panels <= MOST_PIECES and one.grid[0] * one.grid[1] >= FEWEST_PINNED
     ]
-    picked = _apart(near)[:MOST_TRIED_PINNED]
+    picked = _apart(near)[:UPRIGHT_TRIED]
     if len(picked) < 2:
         return choice
     worth = _worth(request, picked, trials)
@@ -400,7 +406,7 @@ def _apart(candidates: Sequence[_Candidate]) -> list[_Candidate]:
 def _worth(request: Request, grids: Sequence[_Candidate], trials: Trials) -> dict[_Candidate, float]:
     """What short fits on each grid reach, symmetric ones first: the best exact IoU, less the price of uneven panels."""
     target, setting, pinned = request.silhouette, request.symmetry, request.pinned
-    poses = TRIED_POSES_PINNED if pinned else TRIED_POSES
+    poses = UPRIGHT_POSES if pinned else TRIED_POSES
     tasks, owners = [], []
     for one in grids:
         for angle, kept in first_angles(target, one.grid, 1, setting, request.start, pinned=pinned)[:poses]:
