@@ -147,7 +147,7 @@ def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) ->
 
 
 class _Shown:
-    """What all pieces show in a state, holes filled, and what it loses while they are cut.
+    """Silhouette of all pieces in a state, holes filled, and its losses while they are cut.
 
     Attributes
     ----------

@@ -160,7 +160,7 @@ class Shaping:
 
     @property
     def faults(self) -> int:
-        """How many pieces fall apart, and pins have no wall or cut a neck."""
+        """Number of pieces that fall apart, and of pins that have no wall or cut a neck."""
         return len(self.broken) + len(self.weak) + len(self.cutting)
 
     def _begin(self, blanks: GeometryArray, known: dict[_Notching, _Notched]) -> None:
