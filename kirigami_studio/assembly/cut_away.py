@@ -64,7 +64,7 @@ def pins_in_holes(deployment: Deployment, panels: PanelTable, phi: float, shown:
         return []
     holes = shapely.union_all([Polygon(ring) for ring in shown.interiors])
     nodes = np.unique(panels.corners[panels.hinged])
-    places = shapely.points(deployment.nodes(phi)[nodes] * cell_mm)
+    places = np.array(shapely.points(deployment.nodes(phi)[nodes] * cell_mm), dtype=object)
     inside = shapely.contains(holes, places)
     deep = np.asarray(shapely.distance(places[inside], shown))
     found: list[int] = nodes[inside][np.argsort(-deep, kind="stable")].tolist()

@@ -12,7 +12,7 @@ where both layers lie in one plane, every point moves along an exact arc, too.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -94,11 +94,11 @@ class LayerMotion:
             opening=math.pi - check_phi(phi_target),
         )
 
-    def without(self, nodes: Collection[int]) -> LayerMotion:
+    def without(self, nodes: Sequence[int]) -> LayerMotion:
         """The motion with as many of these nodes' pins left out as it keeps being the only one.
 
-        They are left out one by one: a pin without which pieces would move in other ways stays.  Where all stay it is
-        this motion itself.
+        They are left out one by one, in their order: a pin without which pieces would move in other ways stays.  Where
+        all stay it is this motion itself.
         """
         if not nodes:
             return self
@@ -111,7 +111,8 @@ class LayerMotion:
         # than others do, is not singular.
         spare = np.eye(len(conditions)) - parts @ parts.T
         left_out = []
-        for node in sorted(set(nodes) & set(pins.tolist())):
+        hinged = set(pins.tolist())
+        for node in (one for one in nodes if one in hinged):
             at = 2 * int(np.searchsorted(pins, node)) + np.arange(2)
             own = spare[np.ix_(at, at)]
             if float(np.linalg.eigvalsh(own)[0]) > NEEDED:

@@ -25,8 +25,9 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
 
-#: How much of what the flat outline can spare pieces may stick out of it: the rest is for gaps that nothing fills.
-MOST_BEYOND = 0.7
+#: How much of what the flat outline can spare it may lose where pieces are cut, and how much of the rest they may stick
+#: out of it.
+MOST_LOST, MOST_BEYOND = 0.6, 0.9
 #: Width of a character of a label, in its heights.
 CHARACTER = 0.7
 
@@ -105,9 +106,9 @@ def pinned(
     panels = panels_left(design, shown, cell_mm, options)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
     with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
-        shaping = Shaping.of(
-            deployment, cell_mm, phi, options, panels, pins_in_holes(deployment, panels, phi, shown, cell_mm)
-        )
+        needless = () if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
+        in_holes = pins_in_holes(deployment, panels, phi, shown, cell_mm)
+        shaping = Shaping.of(deployment, cell_mm, phi, options, panels, in_holes, needless)
         if only_whole and shaping.broken:
             first = piece_names(shaping.motion)[min(shaping.broken)]
             raise FabricationError("pinned.falls_apart", piece=first, count=len(shaping.broken))
@@ -115,14 +116,16 @@ def pinned(
         closed = EndState.of(deployment, panels, math.pi, cell_mm, flat, options.reach_mm)
         spare = (1.0 - options.least_flat) * flat.area
         # Of the flat outline of a cover there is no more than its trim leaves.
-        most = math.inf if design.trim is not None and design.trim.given_up else spare
-        spare -= min(spare, trim_to(shaping, opened, most if options.weight >= 0.5 else 0.0))
-        trim_to(shaping, closed, math.inf if options.weight < 0.5 else 0.0)
-        extend_to(shaping, opened, closed, MOST_BEYOND * spare)
+        most = math.inf if design.trim is not None and design.trim.given_up else MOST_LOST * spare
+        trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)
+        trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+        extend_to(shaping, opened, closed, 0.0)
         extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+        if options.weight > 0.5:
+            extend_to(shaping, opened, closed, MOST_BEYOND * max(0.0, spare - closed.missing(shaping)))
         round_off(shaping, (opened, closed))
         if shown.interiors:  # necks that lead through holes may be joined by what was added
-            trim_to(shaping, opened, 0.0)
+            trim_to(shaping, opened, closed, 0.0)
     assembly = assembled(shaping, deployment, cell_mm, phi)
     names = [piece.id for piece in assembly.pieces]
     ears, _, distance = shaping.ear_distances
@@ -141,6 +144,14 @@ def pinned(
         (float(at.real), float(at.imag)),
         -(-int(np.count_nonzero(tight)) // alike),
     )
+
+
+def _nodes_outside(deployment: Deployment, phi: float, cell_mm: float, outline: Polygon) -> list[int]:
+    """Nodes with pins outside of an outline at ``phi``, the farthest first."""
+    nodes = np.unique(deployment.topology.void_nodes)
+    far = shapely.distance(outline, shapely.points(deployment.nodes(phi)[nodes] * cell_mm))
+    order = np.argsort(-far, kind="stable")
+    return [int(node) for node in nodes[order[: np.count_nonzero(far)]]]
 
 
 def _start_outline(deployment: Deployment) -> FloatArray:

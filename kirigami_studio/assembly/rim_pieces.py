@@ -34,6 +34,9 @@ LEAST_KEPT = 0.3
 #: Middles of necks between pins outside of an outline keep so much of half a neck to the edge; the necks are so much
 #: wider than asked for; and ways inside of the outline cost this share.
 CLEAR_OF_EDGE, WIDER, INSIDE = 0.98, 1.05, 0.05
+#: How much area may be cut off where that leaves gaps inside of the other state's silhouette, relative to what the
+#: silhouette itself may lose.
+GAPS = 2.0
 #: Nicks at the rim that are narrower than twice this, mm, are filled.
 NICK = 2.5
 #: What is nearer than this, mm, touches.
@@ -83,6 +86,20 @@ class EndState:
         openings = openings[shapely.area(openings) > LEAST_PART]
         return cls(math.pi - phi, outline, shapely.union_all(openings), _rim_shares(nodes, panels, reach_mm))
 
+    def missing(self, shaping: Shaping) -> float:
+        """Area, mm2, of the outline that lies outside of the silhouette of all pieces, holes filled."""
+        return float(less(self.outline, silhouette(united(*shaping.placed(self.turn)))).area)
+
+
+def silhouette(shape: BaseGeometry, target: Polygon | None = None) -> BaseGeometry:
+    """The shape without openings, but for those at holes of a target: silhouettes are compared like this."""
+    whole = shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(shape)])
+    if target is None or not target.interiors:
+        return whole
+    rings = np.array([Polygon(ring) for part in shapely.get_parts(shape) for ring in part.interiors], dtype=object)
+    holes = shapely.union_all([Polygon(ring) for ring in target.interiors])
+    return shapely.difference(whole, shapely.union_all(rings[shapely.intersects(rings, holes)]))
+
 
 def _rim_shares(nodes: ComplexArray, panels: PanelTable, reach_mm: float) -> GeometryArray:
     """Panels at rims, those of holes too, with the strip outside of each, between bisectors of the rim's angles."""
@@ -110,7 +127,7 @@ def _add_shares(
 ) -> None:
     """Add to the shares of panels those at one rim, whose sides (L,) run from ``start`` to ``end``."""
     first = int(np.argmax(owner != np.roll(owner, 1)))
-    owner, start, end = (np.roll(values, -first) for values in (owner, start, end))
+    owner, start, end = np.roll(owner, -first), np.roll(start, -first), np.roll(end, -first)
     breaks = np.flatnonzero(owner != np.roll(owner, 1))
     outward = -1j * (end - start) / np.abs(end - start)
     between = outward[breaks] + outward[breaks - 1]
@@ -129,26 +146,23 @@ def _add_shares(
         shares[owner[begin]] = shapely.union_all([shares[owner[begin]], strip, panel.buffer(OVERLAP)])
 
 
-def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
+def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) -> None:
     """Cut pieces along the outline of a state, the farthest outside first; keep all walls.
 
     Parameters
     ----------
     shaping : Shaping
     state : EndState
+    other : EndState
+        The other end, where what is cut off is missing.
     spare : float, mm2
-        How much of the panels may be lost; ears do not count.
-
-    Returns
-    -------
-    lost : float, mm2
-        Of the panels; what is cut along the rim of a hole does not count, for the flat sheet is open there, too.
+        How much the silhouette there may lose; gaps inside of it count less, see :data:`GAPS`.  What is cut along the
+        rim of a hole does not count, for the flat sheet is open there, too.
     """
     holes = np.array([shapely.union_all([Polygon(ring) for ring in state.outline.interiors])], dtype=object)
     motion, keep = shaping.motion, shaping.options.keep_mm
     outside = shapely.area(shapely.difference(shaping.placed(state.turn), state.outline))
-    panels = polygons(motion.corners)
-    lost = 0.0
+    shown = _Shown(shaping, other) if math.isfinite(spare) else None
     for index in np.argsort(-outside):
         if outside[index] < LEAST_PART:
             break
@@ -158,14 +172,55 @@ def trim_to(shaping: Shaping, state: EndState, spare: float) -> float:
         walls = shapely.union_all(discs(motion.corners[index][motion.hinged[index]], keep))
         hole = motion.brought_back(holes, here, state.turn)[0]
         in_hole = shared(body, hole).area > LEAST_PART
-        counts = less(panels[index], hole) if in_hole else panels[index]
         for one in _cut(shaping, index, mine, united(shared(body, mine), shared(body, walls)), in_hole):
-            price = shared(less(body, one), counts).area
-            if lost + price <= spare:
-                lost += price
+            cut = less(body, one)
+            if shown is None or shown.gives(index, cut, less(cut, hole) if in_hole else cut, spare):
                 shaping.bodies[index] = one
                 break
-    return lost
+
+
+class _Shown:
+    """Silhouette of all pieces in a state, holes filled, and its losses while they are cut.
+
+    Attributes
+    ----------
+    lost : float, mm2
+        Of the state's outline, by what was cut so far.
+    bare : float, mm2
+        Of the area of pieces, where no other piece lies.
+    """
+
+    def __init__(self, shaping: Shaping, state: EndState) -> None:
+        self._shaping, self._state = shaping, state
+        self._placed = shaping.placed(state.turn)
+        self._near = shapely.STRtree(self._placed)
+        self._whole = united(*self._placed)
+        self._missed = self._missing(self._whole)
+        self.lost = self.bare = 0.0
+
+    def gives(self, index: int, cut: BaseGeometry, counted: BaseGeometry, spare: float) -> bool:
+        """Cut an area (flat sheet) off a piece if the silhouette can spare what counts of it; whether it was cut."""
+        areas = np.array([cut, counted], dtype=object)
+        whole_cut, placed = self._shaping.motion.placed(areas, np.array([index, index]), self._state.turn)
+        beside = self._near.query(placed, predicate="intersects")
+        bare = less(placed, united(*self._placed[beside[beside != index]]))
+        if self.bare + bare.area > GAPS * spare:
+            return False
+        whole, missed = self._whole, self._missed
+        if bare.area >= LEAST_PART:
+            whole = less(whole, bare)
+            missed = self._missing(whole)
+        if missed - self._missed > spare - self.lost:
+            return False
+        self.lost += missed - self._missed
+        self.bare += bare.area
+        self._whole, self._missed = whole, missed
+        self._placed[index] = less(self._placed[index], whole_cut)
+        return True
+
+    def _missing(self, whole: BaseGeometry) -> float:
+        """Area of the outline that shows nothing."""
+        return float(less(self._state.outline, silhouette(whole)).area)
 
 
 def _cut(
@@ -187,13 +242,14 @@ def _cut(
     motion, body = shaping.motion, shaping.bodies[index]
     whole = shaping.held_together(index, wanted)
     pins, half = as_points(motion.corners[index][motion.hinged[index]]), 0.5 * float(shaping.neck_mm[index])
+    hangs = whole is not None
     # In a hole they are nowhere hidden: as near to its rim as there is a way.
     for beyond in (*BEYOND_MM, math.inf) if to_necks else (math.inf,):
         if whole is None:
             room = body if beyond == math.inf else shared(body, united(wanted, mine.buffer(beyond)))
             links = shortest_links(room, pins, mine, half)
             whole = shaping.held_together(index, united(wanted, shared(body, links)))
-    if whole is not None and (to_necks or whole.area >= LEAST_KEPT * body.area):
+    if whole is not None and (hangs or to_necks or whole.area >= LEAST_KEPT * body.area):
         yield whole
     for beyond in BEYOND_MM:
         whole = shaping.held_together(index, united(wanted, shared(body, mine.buffer(beyond))))

@@ -119,33 +119,53 @@ class Shaping:
         options: PinOptions,
         panels: PanelTable | None = None,
         unwanted: Sequence[int] = (),
+        needless: Sequence[int] = (),
     ) -> Shaping:
         """Panels, all or some, with ears, less what the ears of their neighbours sweep.
 
         Pins of ``unwanted`` nodes are left out first, one after the other, as long as the sheet keeps its one motion.
         Pins without wall or neck are left out as long as the sheet keeps its one motion: their ears cut nothing then.
+        So are those at ``needless`` nodes, the first ones first: after them, or before them where that leaves fewer
+        necks narrow.
         """
-        motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane, panels)
-        for node in unwanted:
-            motion = motion.without([node])
+        motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane, panels).without(unwanted)
+        known: dict[_Notching, _Notched] = {}
+        made = cls._made(deployment, motion, options, known)
+        fewer = made.motion.without(needless)
+        if fewer is not made.motion:
+            made = min(cls._made(deployment, fewer, options, known), made, key=lambda one: one.faults)
+        sooner = motion.without(needless) if made.faults else motion
+        if sooner is not motion:
+            made = min(made, cls._made(deployment, sooner, options, known), key=lambda one: one.faults)
+        return made
+
+    @classmethod
+    def _made(
+        cls, deployment: Deployment, motion: LayerMotion, options: PinOptions, known: dict[_Notching, _Notched]
+    ) -> Shaping:
+        """Leave out pins until all have walls and necks, or the motion is lost without another."""
         made = cls(motion, options)
         blanks = polygons(motion.corners)
         if options.in_one_plane:  # any two sides may meet
             blanks = shapely.buffer(blanks, -0.5 * options.clearance_mm, join_style="mitre")
         else:
             blanks = _less(blanks, made._rubbing_sides(deployment))
-        known: dict[_Notching, _Notched] = {}
         made._begin(blanks, known)
         for _ in range(ROUNDS):
-            fewer = motion.without(made.weak)
+            fewer = motion.without(sorted(made.weak))
             if fewer is motion:
-                fewer = motion.without(made.cutting)
+                fewer = motion.without(sorted(made.cutting))
             if fewer is motion:
                 break
             motion = fewer
             made = cls(motion, options)
             made._begin(blanks, known)
         return made
+
+    @property
+    def faults(self) -> int:
+        """Number of pieces that fall apart, and of pins that have no wall or cut a neck."""
+        return len(self.broken) + len(self.weak) + len(self.cutting)
 
     def _begin(self, blanks: GeometryArray, known: dict[_Notching, _Notched]) -> None:
         """Cut the notches; straps that cut a piece through go, then ears become smaller.

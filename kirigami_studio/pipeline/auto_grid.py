@@ -41,6 +41,8 @@ from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_
 COARSEST, FINEST = 6, 16
 #: The same of pinned sheets, whose pieces somebody has to put together.
 COARSEST_PINNED, FINEST_PINNED = 3, 10
+#: Most rows of upright ones, and most panels.
+HIGHEST, MOST_PIECES = 14, 91
 #: Distances between pins (unit cells) that sheets have room for.
 MOST_GAP = 0.375
 #: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
@@ -65,6 +67,8 @@ FINER_BETWEEN, FINER_GAIN = (0.95, 0.975), 0.005
 FINER_LIMIT, FINER_PANELS = 24, 312
 #: Poses of each grid that are tried, and the steps of each fit.
 TRIED_POSES = 2
+#: The same of pinned sheets that may be upright, and how many of their grids are tried.
+UPRIGHT_POSES, UPRIGHT_TRIED = 6, 3
 TRIAL = (FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
@@ -195,6 +199,7 @@ def choose_grid(
     limit: int = FINEST,
     start: StartShape = RECTANGLE,
     least_gap_mm: float = 0.0,
+    upright: bool = False,
 ) -> GridChoice:
     """The coarsest grid that is expected to match a target, or the one that is expected to match it best.
 
@@ -214,6 +219,8 @@ def choose_grid(
         round one needs enough chords.
     least_gap_mm : float
         How far apart pins stay, which has to fit into the cells; 0 for sheets without.
+    upright : bool
+        Whether pinned sheets for long shapes may be high: their width limits the number of cells.
 
     Raises
     ------
@@ -230,9 +237,11 @@ def choose_grid(
     coarsest = COARSEST
     if pinned:
         smallest = min(smallest, MOST_GAP * width_mm / least_gap_mm)
-        coarsest, limit = COARSEST_PINNED, min(limit, FINEST_PINNED)
-    found = list(_candidates(target, figures, poses, limit, start, coarsest=coarsest))
+        coarsest, limit = COARSEST_PINNED, min(limit, HIGHEST if upright else FINEST_PINNED)
+    found = list(_candidates(target, figures, poses, limit, start, coarsest=coarsest, upright=upright))
     found = found or _nearest(target, figures, poses, limit, start)
+    if upright:
+        found = [one for one in found if one.panels <= MOST_PIECES] or [min(found, key=lambda one: one.panels)]
     most_error = MOST_START_ERROR_PINNED if pinned else MOST_START_ERROR
     found = [one for one in found if one.start_error <= most_error] or [min(found, key=lambda one: one.start_error)]
     cuttable = [one for one in found if one.width <= smallest] or [min(found, key=lambda one: one.width)]
@@ -271,6 +280,7 @@ def predicted_for(request: Request) -> GridChoice:
         FINEST,
         request.start,
         request.least_gap_mm,
+        request.upright,
     )
 
 
@@ -311,12 +321,14 @@ def known_for(request: Request) -> GridChoice:
 def _key(request: Request) -> Hashable:
     """What a choice depends on."""
     sheet = (request.width_mm, request.least_feature_mm, request.least_gap_mm, request.fit_options.free_rim)
-    return request.target, request.phi, request.symmetry, request.start, *sheet
+    return request.target, request.phi, request.symmetry, request.start, request.upright, *sheet
 
 
 def _tried(request: Request, trials: Trials) -> GridChoice:
     target, start, symmetry = request.silhouette, request.start, request.symmetry
     choice = predicted_for(request)
+    if request.upright:
+        return _tried_upright(request, choice, trials)
     hard = choice.code in ("grid.best_expected", "grid.finer_for_holes") and choice.predicted_match < TRIED_BELOW
     if not hard or request.pinned or not choice.poses or choice.poses[0].angle is None:
         return choice
@@ -330,11 +342,7 @@ def _tried(request: Request, trials: Trials) -> GridChoice:
         if 1.0 - one.match <= most_missing and one.width <= smallest
     ]
     near = _fine_enough(near, panels_for_holes(request.target))
-    picked: list[_Candidate] = []
-    for one in sorted(near, key=lambda one: -one.match):
-        apart = all(abs(one.proportion - other.proportion) > TRIED_APART for other in picked)
-        if len(picked) < MOST_TRIED and max(one.grid) <= FINEST and apart:
-            picked.append(one)
+    picked = _apart([one for one in near if max(one.grid) <= FINEST])
     if len(picked) < 2:
         return choice
     worth = _worth(request, picked, trials)
@@ -354,11 +362,54 @@ def _tried(request: Request, trials: Trials) -> GridChoice:
     return GridChoice(best.grid, tuple(kept), best.match, code, tuple(fields.items()))
 
 
+def _tried_upright(request: Request, choice: GridChoice, trials: Trials) -> GridChoice:
+    """The grid of a pinned sheet: of as many pieces, square or upright, whichever short fits match better.
+
+    Pins are left out of account: of seven silhouettes the best short fits have the grid of the best pinned ones.
+    """
+    target, start = request.silhouette, request.start
+    if choice.predicted_match >= TRIED_BELOW or not start.is_plain:
+        return choice
+    poses = _poses(target, request.symmetry, start, pinned=True)
+    least = request.least_feature_mm
+    widest = MOST_GAP * request.width_mm / request.least_gap_mm
+    widest = min(widest, SMALLEST_SHARE * request.width_mm / least) if least > 0.0 else widest
+    figures = ShapeFigures.of(target)
+    near = [
+        one
+        for one in _candidates(target, figures, poses, HIGHEST, start, coarsest=COARSEST_PINNED, upright=True)
+        if one.width <= widest and one.panels <= MOST_PIECES and one.grid[0] * one.grid[1] >= FEWEST_PINNED
+    ]
+    picked = _apart(near)[:UPRIGHT_TRIED]
+    if len(picked) < 2:
+        return choice
+    worth = _worth(request, picked, trials)
+    best = max(worth, key=worth.__getitem__)
+    if worth[best] < TELLING:
+        return choice
+    rows, columns = best.grid
+    kept = shared_symmetries(target, best.grid, request.symmetry, start, pinned=True)
+    fields = {"rows": rows, "columns": columns, "count": len(worth), "percent": 100.0 * best.match}
+    return GridChoice(best.grid, tuple(kept), best.match, "grid.best_tried", tuple(fields.items()))
+
+
+def _apart(candidates: Sequence[_Candidate]) -> list[_Candidate]:
+    """Grids whose proportions differ, at most :data:`MOST_TRIED`; those that are expected to match best."""
+    picked: list[_Candidate] = []
+    for one in sorted(candidates, key=lambda one: -one.match):
+        apart = all(abs(one.proportion - other.proportion) > TRIED_APART for other in picked)
+        if len(picked) < MOST_TRIED and apart:
+            picked.append(one)
+    return picked
+
+
 def _worth(request: Request, grids: Sequence[_Candidate], trials: Trials) -> dict[_Candidate, float]:
-    """What short symmetric fits on each grid reach: the best exact IoU, less the price of uneven panels."""
+    """What short fits on each grid reach, symmetric ones first: the best exact IoU, less the price of uneven panels."""
+    target, setting, pinned = request.silhouette, request.symmetry, request.pinned
+    poses = UPRIGHT_POSES if pinned else TRIED_POSES
     tasks, owners = [], []
     for one in grids:
-        for angle, kept in first_angles(request.silhouette, one.grid, 1, request.symmetry, request.start)[:TRIED_POSES]:
+        for angle, kept in first_angles(target, one.grid, 1, setting, request.start, pinned=pinned)[:poses]:
             tasks.append(TrialTask(one.grid, angle, kept, TRIAL))
             owners.append(one)
     worth: dict[_Candidate, float] = {}
@@ -451,10 +502,12 @@ def _candidates(
     room: float = PROPORTION_ROOM,
     start_room: float = START_ROOM,
     coarsest: int = COARSEST,
+    upright: bool = False,
 ) -> Iterator[_Candidate]:
     """Grids with the parities of the most specific symmetries.
 
-    Rectangles of square cells have proportions between the square and the shape's; others those of the start.
+    Rectangles of square cells have proportions between the square and the shape's; others those of the start.  Sheets
+    for shapes without an axis are wide rather than high, or ``upright``: those whose width limits the number of cells.
     """
     coarsest = min(coarsest, limit - 1)
     sizes = range(coarsest, limit + 1)
@@ -462,8 +515,8 @@ def _candidates(
     settings: list[SymmetricPose | None] = [pose for pose in poses if pose.symmetry is poses[0].symmetry]
     proportions = Proportions.of(target)
     for pose in settings or [None]:
-        # Without an axis the sheet may lie anyhow: wide rather than high.
-        along = proportions.direction + 0.5 * math.pi if pose is None or pose.angle is None else pose.angle
+        free = proportions.direction + (0.0 if upright else 0.5 * math.pi)
+        along = free if pose is None or pose.angle is None else pose.angle
         proportion = proportions.along(along)
         low, high = min(0.0, proportion) - room, max(0.0, proportion) + room
         if not start.is_plain:

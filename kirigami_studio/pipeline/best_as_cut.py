@@ -109,6 +109,7 @@ def _next(left: Sequence[Candidate], ranking: Ranking, losses: Mapping[Candidate
         return first
     if not ranking.least_gap_mm or len(losses) >= MOST_PIECED:
         return None
-    hoped = {one: ranking.worth(one) + HOPED * (1.0 - one.score.iou_exact) for one in left if one not in losses}
-    best = max(hoped, key=hoped.__getitem__, default=first)
-    return best if best is not first and hoped[best] > ranking.worth(first) + WORTHWHILE else None
+    enough = ranking.worth(first) + WORTHWHILE
+    hopeful = [one for one in left if one not in losses]
+    hopeful = [one for one in hopeful if ranking.worth(one) + HOPED * (1.0 - one.score.iou_exact) > enough]
+    return next(iter(ranking.ranked(hopeful)), None)

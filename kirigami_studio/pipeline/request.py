@@ -98,6 +98,8 @@ class Request(DesignChoices):
     least_gap_mm: float = field(
         default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_gap_out_of_range").metadata
     )
+    #: Whether a pinned sheet may be higher than wide where that suits the shape: its pieces are cut one by one
+    upright: bool = field(default=False, kw_only=True)
     grid_chosen: bool = field(default=False, kw_only=True)  #: Whether the run chose the grid
     start_chosen: bool = field(default=False, kw_only=True)  #: Whether the run chose the start
     #: 0..64; designs that are fitted from the uniform sheet instead of sampled, in several poses: at most a quarter of

@@ -41,7 +41,7 @@ from kirigami_studio.polish.pinwheel import gap_in_cells
 from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document, Void
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import FabricationSettings, material_for, pin_gap_mm
+from kirigami_studio.settings.fabrication import FabricationSettings, is_printed, material_for, pin_gap_mm
 from kirigami_studio.settings.layers import hinge_layer
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm, span_mm
@@ -176,6 +176,7 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
+    gap_mm = pin_gap_mm(cut)
     return Request.of(
         target,
         wanted,
@@ -185,7 +186,8 @@ def request_for(
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
         room_mm=sizes_of(cut)[1],
         span_mm=_span_of(cut),
-        least_gap_mm=pin_gap_mm(cut),
+        least_gap_mm=gap_mm,
+        upright=gap_mm > 0.0 and not is_printed(cut),
     )
 
 

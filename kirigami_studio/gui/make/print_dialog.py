@@ -159,7 +159,9 @@ class PrintDialog(QDialog):
                 else tr("Pieces on pins lie on several sheets: Export writes them with assembly.pdf, at true size.")
             )
             return
-        callbacks = JobCallbacks(self._show, on_failed=lambda sentence, _: self._refuse(sentence))
+        callbacks: JobCallbacks[PrintedPages] = JobCallbacks(
+            self._show, on_failed=lambda sentence, _: self._refuse(sentence)
+        )
         self._job.start(tr("laying out pages"), partial(laying_pages, made.plan, settings.paper), callbacks)
 
     def _show(self, pages: PrintedPages | None) -> None:
@@ -189,7 +191,7 @@ class PrintDialog(QDialog):
         self.asking.setOption(QPrintDialog.PrintDialogOption.PrintPageRange)
         self.asking.setMinMax(1, len(self.pages.pages))
         self.asking.accepted.connect(self.print_now)
-        self.asking.open()
+        QDialog.open(self.asking)  # QPrintDialog hides it behind an older one
 
     def print_now(self) -> None:
         """Print on the chosen printer."""

@@ -46,6 +46,8 @@ class PinnedDesign:
         Of its closed outline, before rim pieces are shaped.
     match, flat_match : float
         Exact IoU of the silhouette of all pieces with the target, and of the flat one with the start outline.
+    flat_covered : float
+        Share of the start outline that no gap shows through.
     left_out : int
         Places of pins that have none.
     wall_mm, neck_mm : float
@@ -76,6 +78,7 @@ class PinnedDesign:
     iou_exact: float
     match: float
     flat_match: float
+    flat_covered: float
     left_out: int
     wall_mm: float
     neck_mm: float
@@ -136,6 +139,8 @@ class PinnedTable:
             "match_worst": min(match),
             "worst": self.each[int(np.argmin(match))].target,
             "flat_match_worst": min(one.flat_match for one in self.each),
+            "flat_covered": float(np.mean([one.flat_covered for one in self.each])),
+            "flat_covered_worst": min(one.flat_covered for one in self.each),
             "iou_exact": float(np.mean([one.iou_exact for one in self.each])),
             "overlap_mm2": max(one.overlap_mm2 for one in self.each),
             "pins_mm": max(one.pins_mm for one in self.each),
@@ -218,6 +223,7 @@ def _made(best: Candidate, ranking: Ranking, target: Outline, cut: FabricationSe
         iou_exact=score.iou_exact,
         match=0.0,
         flat_match=0.0,
+        flat_covered=0.0,
         left_out=0,
         wall_mm=0.0,
         neck_mm=0.0,
@@ -241,6 +247,7 @@ def _made(best: Candidate, ranking: Ranking, target: Outline, cut: FabricationSe
         one,
         match=figures.match,
         flat_match=figures.flat_match,
+        flat_covered=figures.flat_covered,
         left_out=made.assembly.left_out,
         wall_mm=figures.wall_mm,
         neck_mm=figures.neck_mm,

@@ -561,7 +561,9 @@ def pinned(arguments: argparse.Namespace) -> int:
     found = design_pinned(
         [target.read() for target in read_targets(list(named))],
         new_settings(cut),
-        DesignSettings(k=arguments.k, polish=arguments.polish, seed=arguments.seed, **chosen),
+        DesignSettings(
+            k=arguments.k, polish=arguments.polish, seed=arguments.seed, symmetry=arguments.symmetry, **chosen
+        ),
         gap_mm=arguments.gap_mm,
         starts=[start_shape(name) for name in arguments.starts],
         report=_shown_on(line, "Designs"),

@@ -381,7 +381,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="least distance of pins (default: what their ears and necks need)"),
         samples(32),
         option("--polish", type=whole, default=15, help="polishing steps (default 15)"),
-        SEED, *FIGURES,
+        SEED, *setting_options(DesignChoices, "symmetry"), *FIGURES,
     ), ("kirigami-studio benchmark pinned --targets library",
         "kirigami-studio benchmark pinned --starts circle --targets square star")),
     SubCommand("benchmark holes", "design drawn targets with holes and cut them in film", "lab.cli.benchmarks:holes", (

@@ -26,7 +26,6 @@ from kirigami_studio.project import edits
 #: Window of a small laptop, and of a large screen at twice the scale, in pixels of the window.
 SMALL, LARGE = QSize(1280, 720), QSize(1920, 1080)
 #: Designs and steps of the run that is pictured while it goes on.
-RUN = {"k": 6, "polish": 30, "auto_grid": False, "grid": (8, 8)}
 #: Width (mm) of a cut that leaves no panel.
 TOO_WIDE = 4.0
 
@@ -125,7 +124,7 @@ class PageStates(OffscreenSession):
     def busy(self) -> None:
         """While a run goes on, with the first designs."""
         window = self.window
-        window.session.apply(edits.set_settings(window.session.document, **RUN))
+        window.session.apply(edits.set_settings(window.session.document, k=6, polish=30, grid=(8, 8)))
         window.commands["generate"].trigger()
         self.until(lambda: bool(window.gallery.view.model_.entries), "no design came")
         self.pages("busy")

@@ -104,3 +104,9 @@ def test_that_as_many_pins_are_left_out_as_one_motion_allows(motion: LayerMotion
     assert 2 * len(left) >= 3 * len(motion.layer) - 4  # two conditions a pin; three shifts of the whole and one motion
     for node in left.tolist():
         assert freedom(replace(fewer, hinged=fewer.hinged & (fewer.nodes != node))) > 1
+
+
+def test_that_pins_are_left_out_in_the_order_in_which_they_are_named(motion: LayerMotion) -> None:
+    every = np.unique(motion.nodes[motion.hinged]).tolist()
+    kept = [set(np.unique(one.nodes[one.hinged]).tolist()) for one in map(motion.without, (every, every[::-1]))]
+    assert kept[0] != kept[1] and len(kept[0]) == len(kept[1])

@@ -12,12 +12,15 @@ import pytest
 import shapely
 
 from kirigami_studio.assembly.checks import PinnedReport, check_pinned, iou, neck_mm, pins_apart, wall_mm
-from kirigami_studio.assembly.motion import LayerMotion
+from kirigami_studio.assembly.motion import LayerMotion, freedom
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Piece, RoundHole
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
 from kirigami_studio.assembly.rim_pieces import shortest_links
 from kirigami_studio.assembly.shaping import Shaping, less
+from kirigami_studio.evaluate.alignment import align
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.foundation.arrays import IntArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.outline import Outline
 from tests.unit.assembly.pinned_designs import bodies_at, overlap_at, pinwheel
@@ -26,6 +29,8 @@ DATA = Path(__file__).resolve().parents[2] / "data"
 WIDTH_MM = 150.0
 #: Of designs of 3 x 3 voids.
 SMALL_MM = 120.0
+#: Sizes for brads in plywood, whose pieces may stick out of the flat outline.
+BRADS = PinOptions(pin_mm=1.6, ear_mm=5.6, neck_mm=2.0, head_mm=5.0, weight=0.75)
 #: Angles at which pieces of one layer may not overlap; random ones, beside those of the checks.
 ANGLES = np.random.default_rng(5).uniform(0.0, math.pi, 41)
 
@@ -272,6 +277,53 @@ def test_that_extensions_of_both_end_states_keep_clear_of_ears_far_from_their_pa
                 looked_at += 1
                 seen += shaping.blocked(other, ear).buffer(1e-6).covers(ear)
     assert seen == looked_at > 20
+
+
+@pytest.fixture(scope="module")
+def notched() -> tuple[PosedDesign, Outline]:
+    """A square whose target has a notch."""
+    design, _ = pinwheel(3, 4)
+    target = Outline.from_points([(0, 0), (1.25, 0), (1.25, 1), (0.8, 1), (0.62, 0.7), (0.45, 1), (0, 1)], "notched")
+    return replace(design, pose=align(design.deployment.outline(0.0), target.points)), target
+
+
+def test_that_pins_outside_of_the_target_are_left_out_where_the_motion_does_not_need_them(
+    notched: tuple[PosedDesign, Outline],
+) -> None:
+    plan = pinned(*notched, 130.0, BRADS)
+    assembly, tables = plan.assembly, plan.assembly.deployment.topology
+    places = assembly.deployment.nodes(0.0) * assembly.cell_mm
+    pinned_nodes = {hinge.node for hinge in assembly.hinges}
+    outside = [node for node in np.unique(tables.void_nodes) if not plan.opened.contains(shapely.Point(places[node]))]
+    assert assembly.left_out > 0 and not pinned_nodes & set(outside)
+    motion = LayerMotion.of(assembly.deployment, assembly.cell_mm, 0.0)
+    assert freedom(replace(motion, hinged=motion.hinged & np.isin(motion.nodes, list(pinned_nodes)))) == 1
+    assert max(overlap_at(assembly, float(phi)) for phi in np.linspace(math.pi, 0.0, 25)) < 1e-6
+
+
+def test_that_pins_without_a_wall_go_before_needless_ones() -> None:
+    deployment, phi = pinwheel(4, 4, 0.25, 0.6, 5)[0].deployment, 0.0
+    cell_mm = (130.0 - 2.0 * BRADS.rim_mm) / float(np.ptp(deployment.compact[:, 0]))
+    motion = LayerMotion.of(deployment, cell_mm, phi)
+    nodes = np.unique(motion.nodes[motion.hinged])
+    weak = set(nodes.tolist()) - set(_pins_of(Shaping.of(deployment, cell_mm, phi, BRADS)).tolist())
+    needless = [int(node) for node in nodes if node not in weak]
+    made = Shaping.of(deployment, cell_mm, phi, BRADS, needless)
+    assert made.faults == 0 and len(weak) == 1 and not weak & set(_pins_of(made).tolist())
+    assert len(_pins_of(made)) < len(nodes) - 1 and freedom(made.motion) == 1
+
+
+def _pins_of(shaping: Shaping) -> IntArray:
+    return np.unique(shaping.motion.nodes[shaping.motion.hinged])
+
+
+def test_that_gaps_within_the_flat_outline_do_not_count_as_lost_and_are_limited(
+    notched: tuple[PosedDesign, Outline], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loose = check_pinned(pinned(*notched, 130.0, BRADS), 2).figures
+    monkeypatch.setattr("kirigami_studio.assembly.rim_pieces.GAPS", 0.0)
+    firm = check_pinned(pinned(*notched, 130.0, BRADS), 2).figures
+    assert loose.match > firm.match + 0.002 and loose.flat_match > 0.97
 
 
 def test_that_gaps_are_known_where_floating_point_gets_what_is_left_of_them_wrong() -> None:

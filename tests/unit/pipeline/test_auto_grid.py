@@ -20,6 +20,7 @@ from kirigami_studio.outlines.symmetry import turned
 from kirigami_studio.pipeline import auto_grid
 from kirigami_studio.pipeline.auto_grid import (
     GOAL,
+    GridChoice,
     ShapeFigures,
     choose_grid,
     chosen_for,
@@ -137,6 +138,26 @@ def test_that_grids_of_pinned_sheets_have_room_for_their_pins_and_no_parity_of_m
     assert 9.8 * width_in_cells(disk.grid, start_shape("circle")) / 240.0 <= 0.42
     request = Request(load("heart"), None, k=4, polish=0, width_mm=240.0, least_gap_mm=9.8)
     assert predicted_for(request) == chosen_for(request) == heart
+
+
+def test_that_sheets_on_pins_are_upright_for_long_shapes_and_have_no_more_pieces() -> None:
+    # Width limits how many cells pins leave room for, height does not.
+    for name in ("letter-l", "crescent", "bone", "wave"):
+        rows, columns = choose_grid(load(name), width_mm=240.0, least_gap_mm=9.0, upright=True).grid
+        assert rows > 1.4 * columns and (rows + 1) * (columns + 1) <= 91
+    # Prints are made as a whole, and lie on one plate.
+    rows, columns = choose_grid(load("letter-l"), width_mm=240.0, least_gap_mm=9.0).grid
+    assert rows <= columns
+
+
+def test_that_short_fits_decide_whether_a_sheet_on_pins_is_square_or_upright() -> None:
+    def chosen(name: str) -> GridChoice:
+        return chosen_for(Request(load(name), None, k=4, polish=0, width_mm=240.0, least_gap_mm=9.0, upright=True))
+
+    cross, arrow = chosen("cross"), chosen("arrow")
+    assert cross.grid == (8, 8) and cross.code == arrow.code == "grid.best_tried"
+    assert choose_grid(load("cross"), width_mm=240.0, least_gap_mm=9.0, upright=True).grid != (8, 8)
+    assert arrow.grid[0] > 1.4 * arrow.grid[1]
 
 
 def test_that_a_limit_is_kept() -> None:
