@@ -193,7 +193,7 @@ pictures: setup
 	cp out/pictures/de/pairs-small.png resources/guide/de/pairs.png
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.tutorial_pictures --out docs/pictures/tutorials
 	$(BIN)/kirigami-studio design heart --grid 6x7 $(PLYWOOD)/1-heart
-	$(BIN)/kirigami-studio design hexagon --grid auto $(PLYWOOD)/2-hexagon
+	$(BIN)/kirigami-studio design star --grid 8x8 $(PLYWOOD)/2-star
 	$(BIN)/kirigami-studio design square --start circle --grid auto $(PLYWOOD)/3-disk
 	$(BIN)/python -m kirigami_studio.lab.demonstrations.assembled_pieces out/plywood/*/design.kiri --out docs/pictures/plywood.png
 	$(BIN)/python -m kirigami_studio.lab.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \

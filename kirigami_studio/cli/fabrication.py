@@ -229,7 +229,8 @@ def parts_json(found: ExportedFiles) -> dict[str, object]:
                 "seconds_estimate": work.times.total,
             }
         ),
-        "pieces": sum(report.pieces for _, report in plans),
+        "pieces": sum(report.pieces for _, report in plans)
+        + sum(len(part.pieces.made.assembly.pieces) for part in found.parts if part.pieces is not None),
         **({"min_connector_mm": min(plan.min_connector_mm for plan, _ in plans)} if plans else {}),
         "warnings": list(dict.fromkeys(warnings)),
         "verified": [_summary(one) | {"part": one.sheet} for one in found.verifications],

@@ -145,7 +145,8 @@ class _NotchCut:
         self._common = shared_parts(self._panels, targets)
         self._area, self._inside = shapely.area(self._panels), shapely.area(self._common)
         # Panels (P,) that have stayed whole so far, and their area.
-        self._middle, self._united = np.ones(len(corners), dtype=np.bool_), NOTHING
+        self._middle = np.ones(len(corners), dtype=np.bool_)
+        self._united: BaseGeometry = NOTHING
         self._known: dict[tuple[int, bytes], tuple[float, BaseGeometry | None]] = {}
 
     def first(self) -> BoolArray:
@@ -209,7 +210,7 @@ class _NotchCut:
         return [int(void) for void in np.flatnonzero(beside)]
 
     def _parts_worth(self, voids: BoolArray, hinged: BoolArray) -> float:
-        """What the parts with these voids and hinges add to the silhouette's worth."""
+        """Worth that the parts with these voids and hinges add to the silhouette."""
         return sum(self._part(k, hinged[k])[0] for k in range(len(hinged))) + float(self._void_gain[voids].sum())
 
     def _draft(self, voids: BoolArray, hinged: BoolArray) -> _NotchDraft:
@@ -254,7 +255,7 @@ class _NotchCut:
         return float(changes + sum(self._part(k, new[k])[0] for k in panels.tolist()))
 
     def _most(self, k: int, hinged: BoolArray) -> float:
-        """What a panel with these hinges may add at most."""
+        """Bound of the worth that a panel with these hinges adds."""
         key = k, hinged.tobytes()
         if key in self._known:
             return self._known[key][0]
@@ -276,14 +277,14 @@ class _NotchCut:
         return (shared - STICKING_OUT * (area - shared) if shape is None else self._worth(k, shape)), shape
 
     def _worth(self, k: int, shape: Polygon) -> float:
-        """What a part of a panel adds to the silhouette's worth."""
+        """Worth of a part of a panel to the silhouette."""
         shared, far = float(shape.intersection(self._common[k]).area), 0.0
         if self._open_inside:
             far = float(shape.difference(shapely.buffer(self._targets[k], self._keep)).area)
         return shared - STICKING_OUT * (float(shape.area) - shared) - FAR_OFF * far
 
     def _clear_of_guests(self, shapes: GeometryArray, hinged: BoolArray) -> GeometryArray:
-        """The parts of all panels, with room for the connectors that rest on their sides from beyond."""
+        """The parts of all panels, with room for connectors that rest on their sides."""
         panels, cleared = all_panels(self._rows, self._columns), shapes.copy()
         place, there = np.zeros((panels.corners.max() + 1, 2)), np.zeros(panels.corners.max() + 2, dtype=np.bool_)
         place[panels.corners] = self._corners

@@ -166,12 +166,13 @@ def _of_sheets(path: Path, content: DxfContent, kerf_mm: float | None) -> FileRe
                       min(ligaments, default=None), sheets=tuple(reports))  # fmt: skip
 
 
-def _box_of(content: DxfContent, number: int) -> tuple[float, ...] | None:
+def _box_of(content: DxfContent, number: int) -> tuple[float, float, float, float] | None:
     """Left, bottom, right and top, mm, of a sheet of a file by its own record."""
     words = content.facts.get(f"S{number}_{BOX}", "").split()
     if len(words) != 4 or not all(BOX_NUMBER.fullmatch(word) for word in words):
         return None
-    return tuple(map(float, words))
+    left, bottom, right, top = map(float, words)
+    return left, bottom, right, top
 
 
 def _judged(path: Path, content: DxfContent, kerf_mm: float | None) -> FileReport:

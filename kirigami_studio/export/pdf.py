@@ -102,8 +102,9 @@ def write_bed_pdf(bed: SheetBed, path: str | Path, paper: str = Paper.NONE, verd
     profile = find_profile("any")
     lines = []
     for stroke in bed.strokes(profile):
-        bent = stroke.bulges is not None
-        points = flattened(stroke.points, stroke.bulges, stroke.closed) if bent else stroke.points
+        points = stroke.points
+        if stroke.bulges is not None:
+            points = flattened(points, stroke.bulges, stroke.closed)
         lines.append((points, stroke.closed, stroke.layer))
     about = f"{len(bed.sheets)} sheets, connectors {bed.sheets[0].plan.connector_mm:g} mm"
     title = " ".join(sheet.plan.design_hash for sheet in bed.sheets)

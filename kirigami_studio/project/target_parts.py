@@ -96,6 +96,38 @@ def with_part(document: Document, number: int, part: Document) -> Document:
     return replace(document, other_parts=tuple(others))
 
 
+def kept_to_scale(before: Document, after: Document) -> Document:
+    """The document after an edit, its other parts to the scale of the shown one.
+
+    A target that is drawn on the board, or given a size, has that size in mm from then on, so the sizes of the others
+    are of another unit.  Where the same shape has another size, the whole has; a new shape leaves the others as large
+    as they were.
+    """
+    target, old = after.target, before.target
+    same_parts = after.part == before.part and after.other_parts is before.other_parts
+    if not after.other_parts or not same_parts or target is old or target is None or old is None:
+        return after
+    was, now = scale_of(before), scale_of(after)
+    opened = now * _drawn(target) / (was * _drawn(old)) if target == old else 1.0
+    factor = opened * was / now
+    others = tuple(_resized(part, factor, target.unit) for part in after.other_parts)
+    return replace(after, other_parts=others, place=_scaled(after.place, factor))
+
+
+def _resized(part: Document, factor: float, unit: str) -> Document:
+    """A part whose target has another size, in another unit."""
+    target = part.target
+    if target is None or target.size is None:
+        return part
+    width, height = target.size
+    sized_target = replace(target, size=(factor * width, factor * height), unit=unit)
+    return replace(part, target=sized_target, place=_scaled(part.place, factor))
+
+
+def _scaled(place: tuple[float, float] | None, factor: float) -> tuple[float, float] | None:
+    return None if place is None else (factor * place[0], factor * place[1])
+
+
 def parts_as_cut(document: Document) -> tuple[Document, ...]:
     """Every part as a project of its own, with the settings of now, all to one scale."""
     scale = scale_of(document)

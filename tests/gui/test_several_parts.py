@@ -89,6 +89,10 @@ def test_that_a_tab_shows_its_part_at_the_scale_of_all(taken: MainWindow) -> Non
     assert taken.target.view.outline is not None
     sizes = [max(size_of(part).opened) for part in parts_as_cut(document)]
     assert sizes == pytest.approx([12.0, 24.0], rel=1e-3)
+    taken.services.fabrication.set_opened_size(48.0)
+    wider = [max(size_of(part).opened) for part in parts_as_cut(taken.session.document)]
+    assert wider == pytest.approx([24.0, 48.0], rel=1e-3)
+    taken.services.project.undo()
     taken.services.project.undo()
     assert taken.pages.parts.currentIndex() == 0
 

@@ -17,9 +17,9 @@ from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import edit_target, set_fabrication, set_settings, set_target
 from kirigami_studio.project.history import History
-from kirigami_studio.project.sheet_size import size_of
+from kirigami_studio.project.sheet_size import set_opened_size, size_of, sized
 from kirigami_studio.project.store import load, pack, packed_design, packed_designs, save
-from kirigami_studio.project.target_parts import parts_as_cut, set_parts, show_part
+from kirigami_studio.project.target_parts import kept_to_scale, parts_as_cut, set_parts, show_part
 from tests.refusals import refused
 
 
@@ -67,6 +67,31 @@ def test_that_another_size_of_one_part_is_another_scale_for_all(letter) -> None:
     assert sizes(wider) == pytest.approx([2.0 * size for size in before], rel=1e-9)
     shown = show_part(wider, 1).document
     assert sizes(shown) == pytest.approx([2.0 * size for size in before], rel=1e-9)
+
+
+@pytest.mark.parametrize("unit", ["mm", "px"])
+def test_that_a_size_that_is_typed_is_another_scale_for_all(unit: str, dot, pentagon) -> None:
+    letter = set_parts(Document(), [(replace(one, unit=unit), (0.0, 9.0)) for one in (dot, pentagon)]).document
+    before = sizes(letter)
+    typed = kept_to_scale(letter, set_opened_size(letter, 3.0 * before[0]).document)
+    assert sizes(typed) == pytest.approx([3.0 * size for size in before], rel=1e-9)
+    again = kept_to_scale(typed, set_opened_size(typed, before[0]).document)
+    assert sizes(show_part(again, 1).document) == pytest.approx(before, rel=1e-9)
+    # The drawing keeps its proportions: distance of the parts to their size.
+    places, drawn = zip(*((part.place[1], max(part.target.size)) for part in again.parts), strict=True)
+    assert places[0] == pytest.approx(places[1])
+    assert drawn[0] / drawn[1] == pytest.approx(max(dot.size) / max(pentagon.size), rel=1e-9)
+
+
+def test_that_another_shape_of_one_part_leaves_the_others_as_large_as_they_were(dot, pentagon) -> None:
+    letter = set_parts(Document(), [(replace(one, unit="px"), None) for one in (dot, pentagon)]).document
+    letter = set_fabrication(letter, width_mm=37.0).document
+    before = sizes(letter)
+    # The board draws in mm, whatever the source had.
+    oval = Outline.from_points(dot.points * (30.0, 20.0), "dot", unit="mm")
+    changed = kept_to_scale(letter, sized(edit_target(letter, oval, "Move point").document))
+    assert sizes(changed)[0] == pytest.approx(max(oval.size), rel=1e-9)
+    assert sizes(changed)[1] == pytest.approx(before[1], rel=1e-9)
 
 
 def test_that_each_part_keeps_its_designs_and_all_share_settings(letter, candidates) -> None:
