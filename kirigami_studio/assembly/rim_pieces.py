@@ -110,7 +110,7 @@ def _add_shares(
 ) -> None:
     """Add to the shares of panels those at one rim, whose sides (L,) run from ``start`` to ``end``."""
     first = int(np.argmax(owner != np.roll(owner, 1)))
-    owner, start, end = (np.roll(values, -first) for values in (owner, start, end))
+    owner, start, end = np.roll(owner, -first), np.roll(start, -first), np.roll(end, -first)
     breaks = np.flatnonzero(owner != np.roll(owner, 1))
     outward = -1j * (end - start) / np.abs(end - start)
     between = outward[breaks] + outward[breaks - 1]
