@@ -12,7 +12,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.assembly.motion import discs, polygons
+from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.evaluate.boundary import as_plane
 from kirigami_studio.evaluate.kept_panels import PanelTable, all_panels
@@ -64,7 +64,7 @@ def pins_in_holes(deployment: Deployment, panels: PanelTable, phi: float, shown:
         return []
     holes = shapely.union_all([Polygon(ring) for ring in shown.interiors])
     nodes = np.unique(panels.corners[panels.hinged])
-    places = np.array(shapely.points(deployment.nodes(phi)[nodes] * cell_mm), dtype=object)
+    places: GeometryArray = np.asarray(shapely.points(deployment.nodes(phi)[nodes] * cell_mm), dtype=object)
     inside = shapely.contains(holes, places)
     deep = np.asarray(shapely.distance(places[inside], shown))
     found: list[int] = nodes[inside][np.argsort(-deep, kind="stable")].tolist()
