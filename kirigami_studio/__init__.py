@@ -16,6 +16,7 @@ _MODULES = {
     "api.target": ("Target", "load_target", "target_names"),
     "api.design": ("Sheet", "decode", "Design", "score", "siou", "Cuts", "Pieces", "Exported"),
     "api.designs": ("Designs", "design", "load_project", "machine_names", "material_names"),
+    "api.parts": ("ExportedParts", "Parts", "design_parts", "load_parts"),
     "api.simulation": ("Simulation",),
     "api.checked_file": ("CheckedFile", "check"),
     "pipeline.events": ("Progress",),

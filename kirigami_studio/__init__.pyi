@@ -23,6 +23,10 @@ if not CHECKED_FROM_INSIDE:
     from kirigami_studio.api.designs import load_project as load_project
     from kirigami_studio.api.designs import machine_names as machine_names
     from kirigami_studio.api.designs import material_names as material_names
+    from kirigami_studio.api.parts import ExportedParts as ExportedParts
+    from kirigami_studio.api.parts import Parts as Parts
+    from kirigami_studio.api.parts import design_parts as design_parts
+    from kirigami_studio.api.parts import load_parts as load_parts
     from kirigami_studio.api.simulation import Simulation as Simulation
     from kirigami_studio.api.target import Target as Target
     from kirigami_studio.api.target import load_target as load_target

@@ -48,13 +48,13 @@ UNUSED_MODULES = [
         "fsspec",
     ),
     *("PySide6.QtNetwork", "PySide6.QtOpenGL", "PySide6.QtOpenGLWidgets", "PySide6.QtTest", "PySide6.QtQml"),
-    *("PySide6.QtQuick", "PySide6.QtPrintSupport", "PySide6.QtSql", "PySide6.QtDBus", "PySide6.QtUiTools"),
+    *("PySide6.QtQuick", "PySide6.QtSql", "PySide6.QtDBus", "PySide6.QtUiTools"),
     *("scipy.datasets", "pyqtgraph.examples", "pyqtgraph.opengl"),
 ]
 #: Plugins of Qt that are kept.
 PLUGINS = re.compile(
     r"platforms/(lib)?q(xcb|wayland|offscreen|windows|cocoa)|imageformats/(lib)?q(svg|jpeg|gif|ico|icns|webp|tiff)|"
-    r"iconengines/|platformthemes/|platforminputcontexts/lib(compose|ibus)|styles/|xcbglintegrations/|wayland-"
+    r"iconengines/|printsupport/|platformthemes/|platforminputcontexts/lib(compose|ibus)|styles/|xcbglintegrations/|wayland-"
 )
 #: Libraries of Qt that only left out plugins need.
 QT_LIBRARIES = re.compile(

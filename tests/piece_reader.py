@@ -20,6 +20,8 @@ import svgelements
 from shapely.geometry import Polygon
 
 Ring = tuple[np.ndarray, bool]  #: points, and whether they are those of a circle
+#: Layers whose lines are engraved.
+ENGRAVED = ("NAME", "ARTWORK")
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ def circle(centre: np.ndarray, radius: float) -> np.ndarray:
 def dxf_rings(path: Path) -> list[Ring]:
     rings: list[Ring] = []
     for entity in ezdxf.readfile(path).modelspace():
-        if entity.dxf.layer == "NAME":
+        if entity.dxf.layer in ENGRAVED:
             continue
         if entity.dxftype() == "CIRCLE":
             rings.append((circle(np.array([entity.dxf.center.x, entity.dxf.center.y]), entity.dxf.radius), True))
@@ -67,7 +69,7 @@ def svg_rings(path: Path) -> list[Ring]:
     rings: list[Ring] = []
     drawing = svgelements.SVG.parse(path, reify=False)
     height = float(drawing.viewbox.height)
-    for group in drawing.select(lambda element: isinstance(element, svgelements.Group) and element.id != "NAME"):
+    for group in drawing.select(lambda element: isinstance(element, svgelements.Group) and element.id not in ENGRAVED):
         for shape in group:
             if not isinstance(shape, svgelements.Path):
                 continue
@@ -89,7 +91,7 @@ def project_rings(path: Path) -> list[Ring]:
     for shape in root.findall("Shape"):
         place = np.array([float(word) for word in shape.findtext("XForm").split()])
         assert place[:4].tolist() == [1.0, 0.0, 0.0, 1.0]
-        if names[shape.get("CutIndex")] == "NAME":
+        if names[shape.get("CutIndex")] in ENGRAVED:
             continue
         if shape.get("Type") == "Ellipse":
             rings.append((circle(place[4:], float(shape.get("Rx"))), True))
@@ -104,11 +106,41 @@ def project_rings(path: Path) -> list[Ring]:
 READERS = {".dxf": dxf_rings, ".svg": svg_rings, ".lbrn2": project_rings}
 
 
+@dataclass(frozen=True)
+class Recognised:
+    """Pieces of one kind of file, in their own frames.
+
+    Attributes
+    ----------
+    found : dict
+        Finished area of each piece without its round holes, and their middles.
+    beams : dict
+        File of each piece, its outline there, and the turn and shift from there to its frame.
+    outline_mm, holes_mm : float
+        As in :class:`Together`.
+    """
+
+    found: dict[str, tuple[Polygon, np.ndarray]]
+    beams: dict[str, tuple[Path, Polygon, np.ndarray, np.ndarray]]
+    outline_mm: float
+    holes_mm: float
+
+
 def put_together(folder: Path, kind: str, kerf_mm: float) -> Together:
     """Read the files of a kind, recognise every piece once, and move them as ``pieces.json`` says."""
     record = json.loads((folder / "pieces.json").read_text())
+    layers = {piece["id"]: piece["layer"] for piece in record["pieces"]}
+    read = recognise(folder, kind, kerf_mm)
+    return Together(len(read.found), read.outline_mm, read.holes_mm, *moved(record, read.found, layers))
+
+
+def recognise(folder: Path, kind: str, kerf_mm: float) -> Recognised:
+    """Read the files of a kind, and recognise every piece once."""
+    record = json.loads((folder / "pieces.json").read_text())
     wanted = {piece["id"]: piece for piece in record["pieces"]}
+    whole = {name: filleted(Polygon(piece["outline"]), kerf_mm) for name, piece in wanted.items()}
     found: dict[str, tuple[Polygon, np.ndarray]] = {}
+    beams: dict[str, tuple[Path, Polygon, np.ndarray, np.ndarray]] = {}
     outline_mm = holes_mm = 0.0
     for path in sorted(folder.glob(f"layer-*{kind}")):
         layer = int(re.match(r"layer-(\d+)", path.name)[1])
@@ -123,10 +155,10 @@ def put_together(folder: Path, kind: str, kerf_mm: float) -> Together:
             burned = [one.buffer(0.5 * kerf_mm, quad_segs=64) for one in pockets if beam.contains(one)]
             finished = beam.buffer(-0.5 * kerf_mm, quad_segs=64).difference(shapely.union_all(burned))
             here = np.array([holes[at] for at in mine]).reshape(-1, 2)
-            name, turn, shift, miss = recognised(finished, here, layer, wanted, found, kerf_mm)
+            name, turn, shift, miss = recognised(finished, here, layer, wanted, whole, found)
             area = shapely.transform(finished, lambda points, turn=turn, shift=shift: points @ turn.T + shift)
             meant = Polygon(wanted[name]["outline"])
-            fillets = filleted(meant, kerf_mm)
+            fillets = whole[name]
             corners = shapely.points(shapely.get_coordinates(area))
             outline_mm = max(outline_mm, shapely.distance(shapely.points(np.array(meant.exterior.coords)), area).max(),
                              shapely.distance(corners, fillets).max())  # fmt: skip
@@ -134,8 +166,50 @@ def put_together(folder: Path, kind: str, kerf_mm: float) -> Together:
             sizes = [abs(radii[at] + 0.5 * kerf_mm - radius[0]) for at in mine]
             holes_mm = max(holes_mm, miss, *sizes, 0.0)
             found[name] = (area, here @ turn.T + shift)
+            beams[name] = (path, beam, turn, shift)
     assert set(found) == set(wanted), "a piece is missing"
-    return Together(len(found), outline_mm, holes_mm, *moved(record, found, {n: p["layer"] for n, p in wanted.items()}))
+    return Recognised(found, beams, outline_mm, holes_mm)
+
+
+def artwork_of(path: Path) -> list[np.ndarray]:
+    """Lines (P, 2), mm, on the layer of artwork of a cut file; closed ones repeat their first point."""
+    lines: list[np.ndarray] = []
+    if path.suffix == ".dxf":
+        for entity in ezdxf.readfile(path).modelspace().query('*[layer=="ARTWORK"]'):
+            points = np.array(entity.get_points("xy"))
+            lines.append(np.vstack([points, points[:1]]) if entity.closed else points)
+    elif path.suffix == ".svg":
+        drawing = svgelements.SVG.parse(path, reify=False)
+        height = float(drawing.viewbox.height)
+        for group in drawing.select(lambda one: isinstance(one, svgelements.Group) and one.id == "ARTWORK"):
+            for shape in (one for one in group if isinstance(one, svgelements.Path)):
+                ends = [part.end for part in shape]
+                lines.append(np.array([[end.x, height - end.y] for end in ends], dtype=float))
+    else:
+        root = ElementTree.parse(path).getroot()
+        names = {s.find("index").get("Value"): s.find("name").get("Value") for s in root.findall("CutSetting")}
+        for shape in root.findall("Shape"):
+            if names[shape.get("CutIndex")] == "ARTWORK":
+                place = np.array([float(word) for word in shape.findtext("XForm").split()])[4:]
+                corners = np.array(re.findall(r"V(\S+) ([-\d.]+)", shape.findtext("VertList")), dtype=float)
+                ways = np.array(re.findall(r"L(\d+) (\d+)", shape.findtext("PrimList")), dtype=int)
+                lines.append(corners[[*ways[:, 0], ways[-1, 1]]] + place)
+    return lines
+
+
+def posed_artwork(folder: Path, read: Recognised, step: int) -> list[np.ndarray]:
+    """Lines of artwork of all pieces as they lie at a step of the motion, mm."""
+    record = json.loads((folder / "pieces.json").read_text())
+    lines = {path: artwork_of(path) for path in {beam[0] for beam in read.beams.values()}}
+    posed = []
+    for name, (path, beam, turn, shift) in read.beams.items():
+        x, y, angle = record["motion"][step]["poses"][name]
+        turned = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        for line in lines[path]:
+            if beam.contains(shapely.Point(line[:2].mean(axis=0))):
+                posed.append((line @ turn.T + shift) @ turned.T + (x, y))
+    assert len(posed) == sum(map(len, lines.values())), "a line lies on no piece, or on two"
+    return posed
 
 
 def filleted(area: Polygon, kerf_mm: float) -> Polygon:
@@ -144,14 +218,19 @@ def filleted(area: Polygon, kerf_mm: float) -> Polygon:
 
 
 def recognised(
-    area: Polygon, holes: np.ndarray, layer: int, wanted: dict[str, dict], found: dict[str, object], kerf_mm: float
+    area: Polygon,
+    holes: np.ndarray,
+    layer: int,
+    wanted: dict[str, dict],
+    whole: dict[str, Polygon],
+    found: dict[str, object],
 ) -> tuple[str, np.ndarray, np.ndarray, float]:
     """The piece of a layer that is not found yet and fits best; its turn, its shift, and how far its holes are off."""
     best = ("", np.eye(2), np.zeros(2), np.inf)
     for name, piece in wanted.items():
         if piece["layer"] != layer or name in found or len(piece["holes"]) != len(holes):
             continue
-        meant = filleted(Polygon(piece["outline"]), kerf_mm)
+        meant = whole[name]
         if abs(meant.area - area.area) > 0.5:
             continue
         middles = np.array([Polygon(ring).centroid.coords[0] for ring in piece["holes"]]).reshape(-1, 2)
@@ -174,25 +253,36 @@ def fitted(points: np.ndarray, onto: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return turn, shift, float(np.linalg.norm(points @ turn.T + shift - onto, axis=1)[:-1].max(initial=0.0))
 
 
+def nearest(holes: np.ndarray, pin: list[float]) -> np.ndarray:
+    """The hole of a piece that is nearest to a pin's place in it."""
+    return holes[np.linalg.norm(holes - pin, axis=1).argmin()]
+
+
 def moved(record: dict, found: dict[str, tuple[Polygon, np.ndarray]], layers: dict[str, int]) -> tuple[float, float]:
     """Farthest that the holes of a pin are apart, and largest overlap within a layer, over the whole motion."""
     pins = overlap = 0.0
+    names = list(found)
+    layer = np.array([layers[name] for name in names])
+    areas = np.array([found[name][0] for name in names], dtype=object)
+    points, owner = shapely.get_coordinates(areas, return_index=True)
+    pinned = [[names.index(hinge["pieces"][side]) for hinge in record["hinges"]] for side in (0, 1)]
+    drilled = [
+        np.array([nearest(found[hinge["pieces"][side]][1], hinge["at"][side]) for hinge in record["hinges"]])
+        for side in (0, 1)
+    ]
     for step in record["motion"]:
-        areas, holes = {}, {}
-        for name, (area, middles) in found.items():
-            x, y, turn = step["poses"][name]
-            turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-            areas[name] = shapely.transform(area, lambda points, t=turned, s=(x, y): points @ t.T + s)
-            holes[name] = middles @ turned.T + (x, y)
-        for hinge in record["hinges"]:
-            ends = []
-            for name, at in zip(hinge["pieces"], hinge["at"], strict=True):
-                x, y, turn = step["poses"][name]
-                turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-                pin = turned @ np.array(at) + (x, y)
-                ends.append(holes[name][np.linalg.norm(holes[name] - pin, axis=1).argmin()])
-            pins = max(pins, float(np.linalg.norm(ends[0] - ends[1])))
-        for layer in set(layers.values()):
-            here = [areas[name] for name in areas if layers[name] == layer]
-            overlap = max(overlap, sum(area.area for area in here) - shapely.union_all(here).area)
+        poses = np.array([step["poses"][name] for name in names])
+        turn, shift = np.exp(1j * poses[:, 2]), poses[:, 0] + 1j * poses[:, 1]
+        ends = [
+            turn[here] * (holes.reshape(-1, 2) @ (1.0, 1j)) + shift[here]
+            for here, holes in zip(pinned, drilled, strict=True)
+        ]
+        pins = max(pins, float(np.abs(ends[0] - ends[1]).max(initial=0.0)))
+        moved_points = turn[owner] * (points @ (1.0, 1j)) + shift[owner]
+        placed = shapely.set_coordinates(areas.copy(), np.column_stack([moved_points.real, moved_points.imag]))
+        one, other = shapely.STRtree(placed).query(placed, predicate="intersects")
+        pairs = (one < other) & (layer[one] == layer[other])
+        shared = shapely.area(shapely.intersection(placed[one[pairs]], placed[other[pairs]]))
+        for number in set(layers.values()):
+            overlap = max(overlap, float(shared[layer[one[pairs]] == number].sum()))
     return pins, overlap

@@ -2,7 +2,8 @@
 
 Each is a random pinwheel with ears, kerf, bed, profile and target angle of its own; every other one has the pieces of
 the program (notches, trimmed rims), the others simple ones.  Its DXF, SVG and LightBurn files are read by libraries,
-pieces are recognised by their holes, and put together by ``pieces.json`` at all of its angles.
+pieces are recognised by their holes, and put together by ``pieces.json`` at all of its angles.  One design in twenty
+has 10 x 10 voids.  With ``--results FILE`` a run that was stopped goes on.
 """
 
 from __future__ import annotations
@@ -35,6 +36,10 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Bounds of what is read back: outlines, holes and pins in mm, overlap in mm^2.
 BOUNDS = Together(0, 2e-3, 1e-3, 1e-3, 0.01)
+#: What a line says of a design without faults.
+GOOD = "as it should be"
+#: Voids each way at most, and the grid of one design in so many.
+MOST, LARGE_GRID, LARGE_EVERY = 6, (10, 10), 20
 #: Profiles with one file for each bed that has arcs.
 PROFILES = ("any", "lightburn", "single", "glowforge", "slots")
 
@@ -50,10 +55,16 @@ def posed(rows: int, columns: int, seed: int, phi: float) -> tuple[PosedDesign, 
     return PosedDesign(deployment, Similarity(scale, 0.0, tuple(-scale * middle)), phi), Outline.from_points(ellipse)
 
 
-def random_job(seed: int, most: int = 6) -> AssemblyJob:
+def random_grid(random: np.random.Generator, seed: int, most: int) -> tuple[int, int]:
+    """A grid of ``most`` voids each way; every so many designs of a long run have a large one."""
+    rows, columns = (int(random.integers(2, most + 1)) for _ in range(2))
+    return LARGE_GRID if most == MOST and seed % LARGE_EVERY == LARGE_EVERY - 1 else (rows, columns)
+
+
+def random_job(seed: int, most: int = MOST) -> AssemblyJob:
     """A random design with random choices of its cutting, of ``most`` voids each way."""
     random = np.random.default_rng(seed)
-    rows, columns = (int(random.integers(2, most + 1)) for _ in range(2))
+    rows, columns = random_grid(random, seed, most)
     phi = float(random.choice([0.0, 0.0, random.uniform(0.2, 2.0)]))
     kerf = float(random.choice([0.0, 0.05, 0.15, 0.2, 0.3]))
     bed = [float(random.choice([0.0, random.uniform(120.0, 600.0)])) for _ in range(2)]
@@ -80,7 +91,7 @@ def random_job(seed: int, most: int = 6) -> AssemblyJob:
     )
 
 
-def faults(seed: int, folder: Path, most: int = 6) -> list[str]:
+def faults(seed: int, folder: Path, most: int = MOST) -> list[str]:
     """Write a random design, read it back without the program, and name all that is not as it should be."""
     job = random_job(seed, most)
     write_assembly(job, folder)
@@ -100,22 +111,33 @@ def faults(seed: int, folder: Path, most: int = 6) -> list[str]:
 
 
 def played(faults: Callable[[int, Path], list[str]], about: str | None) -> int:
-    """Make as many designs as the command line asks for, and print the faults of each; 1 if there are any."""
+    """Make as many designs as the command line asks for, and print the faults of each; 1 if there are any.
+
+    A run that was stopped goes on after the last design in its file of results.
+    """
     parser = argparse.ArgumentParser(description=about)
     parser.add_argument("designs", type=int)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--results", type=Path, help="file that gets a line for each design")
     asked = parser.parse_args()
-    bad, begun = 0, time.process_time()
+    known = asked.results.read_text().splitlines() if asked.results and asked.results.exists() else []
+    lines, begun = dict(line.split(": ", 1) for line in known), time.process_time()
     for seed in range(asked.seed, asked.seed + asked.designs):
+        if f"{seed}" in lines:
+            continue
         with tempfile.TemporaryDirectory() as folder:
             try:
                 found = faults(seed, Path(folder) / "out")
             except Exception as error:  # every kind of failure is a fault of the design
                 found = [f"{type(error).__name__}: {error}"]
-        bad += bool(found)
-        sys.stdout.write(f"{seed}: {'; '.join(found) or 'as it should be'}\n")
+        lines[f"{seed}"] = "; ".join(found) or GOOD
+        sys.stdout.write(f"{seed}: {lines[f'{seed}']}\n")
         sys.stdout.flush()
-    sys.stdout.write(f"{asked.designs} designs, {bad} bad, {time.process_time() - begun:.0f} s of processor time\n")
+        if asked.results:
+            with asked.results.open("a") as results:
+                results.write(f"{seed}: {lines[f'{seed}']}\n")
+    bad = sum(line != GOOD for line in lines.values())
+    sys.stdout.write(f"{len(lines)} designs, {bad} bad, {time.process_time() - begun:.0f} s of processor time\n")
     return min(bad, 1)
 
 

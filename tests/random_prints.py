@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from manifold3d import Manifold, Mesh64
-from random_assemblies import played, posed
+from random_assemblies import MOST, played, posed
 from solid_reader import ReadBody, read_3mf, read_stl
 
 from kirigami_studio.assembly.options import PinOptions
@@ -32,7 +32,7 @@ SAME_VOLUME, ROUNDNESS_MM = 1e-3, 0.02
 ANGLES = 3
 
 
-def random_print(seed: int, most: int = 6) -> PrintJob:
+def random_print(seed: int, most: int = MOST) -> PrintJob:
     """A random design of ``most`` voids each way, and how it is printed."""
     random = np.random.default_rng(seed)
     rows, columns = (int(random.integers(2, most + 1)) for _ in range(2))
@@ -47,7 +47,7 @@ def random_print(seed: int, most: int = 6) -> PrintJob:
     return PrintJob(assembly, material, find_machine("fdm-256"), pins)
 
 
-def faults(seed: int, folder: Path, most: int = 6) -> list[str]:
+def faults(seed: int, folder: Path, most: int = MOST) -> list[str]:
     """Write a random print, read it back, and name all that is not as it should be."""
     job = random_print(seed, most)
     write_print(job, folder)

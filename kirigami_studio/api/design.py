@@ -65,6 +65,7 @@ from kirigami_studio.lattice.sheet_files import read_sheet, sheet_json, sheet_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
+from kirigami_studio.project.edits import ALONE
 from kirigami_studio.project.labels import cleaned_name
 from kirigami_studio.project.store import CUT_FILES, SUFFIX, load, save
 from kirigami_studio.settings.design import DesignSettings
@@ -494,7 +495,7 @@ class Design:
             ``.dxf``, ``.svg``, ``.pdf`` or ``.lbrn2``: cut files, for designs in layers in a folder of this name;
             ``.stl``, ``.3mf`` or ``.obj``: solids, on printed pins in a folder of this name; ``.png``: the closed
             sheet; ``.gif``: its motion; ``.html``: a page to share; ``.fold``,
-            ``.xml`` (MuJoCo), ``.csv``: its parts and hinges.
+            ``.xml`` (MuJoCo), ``.csv``: its parts and hinges; ``.inp``: its finite elements.
 
         Returns
         -------
@@ -527,7 +528,12 @@ class Design:
         """
         label = self.document.label
         alone = replace(
-            self.document, candidates=(self.candidate,), chosen=0, marks=(), labels=() if label is None else (label,)
+            self.document,
+            candidates=(self.candidate,),
+            chosen=0,
+            marks=(),
+            labels=() if label is None else (label,),
+            **ALONE,
         )
         return save_project(alone, path)
 

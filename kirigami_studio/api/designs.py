@@ -38,7 +38,15 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
 from kirigami_studio.settings.fabrication import new_settings
-from kirigami_studio.studio.designing import Tell, completed, document_of, request_for, run_design, why_covered
+from kirigami_studio.studio.designing import (
+    Tell,
+    completed,
+    document_of,
+    limit_of,
+    request_for,
+    run_design,
+    why_covered,
+)
 
 #: Letters of a line of progress; what is left of a longer one before is written over.
 LINE = 78
@@ -101,6 +109,11 @@ class Designs(Sequence[Design]):
         """Why covers, of which parts are cut away, stand beside closed designs; "" without any."""
         why = why_covered(self.document.candidates, self.document.target, self.document.settings.start)
         return "" if why is None else why.text
+
+    def closed_limit(self) -> str:
+        """Limit of closed sheets for the target, with the most that was found; "" for none."""
+        limit = limit_of(self.document)
+        return "" if limit is None else limit.text
 
     def table(self) -> list[dict[str, Any]]:
         """One row of figures for each, for ``pandas.DataFrame`` and the like."""

@@ -19,7 +19,9 @@ from kirigami_studio.assembly.pinned import PinnedPlan
 from kirigami_studio.assembly.rim_pieces import silhouette
 from kirigami_studio.assembly.shaping import united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.evaluate.trimming import MOSTLY_OPEN, SMALL_HOLE, TrimmedHole
 from kirigami_studio.fabricate.findings import Problem, Severity
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
 
 #: Angles at which a plan is looked over for collisions, beside the swept areas that it is made by.
@@ -43,8 +45,8 @@ class PinnedFigures:
     Attributes
     ----------
     match, flat_match : float, 0..1
-        Exact IoU of the assembled silhouette (both layers, holes filled) with the target, and of the flat one with the
-        start outline.
+        Exact IoU of the assembled silhouette (both layers, openings filled but for those at holes of the target) with
+        the target, and of the flat one, filled, with the start outline.
     covered, flat_covered : float, 0..1
         Share of both outlines that no hole or gap shows through.
     lost_flat, beyond_flat : float, 0..1
@@ -109,17 +111,18 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
         necks.append(neck_mm(piece, body, options.neck_mm, widest) if whole else 0.0)
         if necks[-1] >= options.neck_mm:
             widest = min(widest, necks[-1])  # wider ones need not be measured
-    panels = shapely.area(shapely.polygons(assembly.deployment.panels(math.pi).reshape(-1, 4, 2) * assembly.cell_mm))
+    corners = assembly.deployment.panels(math.pi).reshape(-1, 4, 2)[assembly.numbers]
+    panels = shapely.area(shapely.polygons(corners * assembly.cell_mm))
     kept = shapely.area(bodies) / panels
     apart, pair = pins_apart(assembly.deployment, [hinge.node for hinge in assembly.hinges], assembly.cell_mm, phi)
-    shown, flat_shown = silhouette(opened), silhouette(flat)
+    seen, flat_seen = filled(opened, plan.opened), silhouette(flat)
     figures = PinnedFigures(
-        match=iou(shown, plan.opened),
-        flat_match=iou(flat_shown, plan.flat),
+        match=iou(seen, plan.opened),
+        flat_match=iou(flat_seen, plan.flat),
         covered=float(plan.opened.intersection(opened).area / plan.opened.area),
         flat_covered=float(plan.flat.intersection(flat).area / plan.flat.area),
-        lost_flat=float(plan.flat.difference(flat_shown).area / plan.flat.area),
-        beyond_flat=float(flat_shown.difference(plan.flat).area / plan.flat.area),
+        lost_flat=float(plan.flat.difference(flat_seen).area / plan.flat.area),
+        beyond_flat=float(flat_seen.difference(plan.flat).area / plan.flat.area),
         gap_mm=plan.gap_mm,
         pins_apart_mm=apart,
         wall_mm=min(walls),
@@ -133,6 +136,9 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
         for piece, (x, y, _) in zip(assembly.pieces, assembly.poses(math.pi), strict=True)
     }
     problems = _broken(plan, places)
+    ear = 0.25 * math.pi * (options.ear_mm / assembly.cell_mm) ** 2
+    shown = shown_holes(plan, bodies, seen)
+    problems += closed_holes(shown, np.zeros(2), assembly.cell_mm, "pinned.hole_too_small", ear)
     needed = options.ear_mm + options.clearance_mm
     if plan.gap_mm < needed - ROUNDNESS_MM:
         problems.append(
@@ -166,7 +172,7 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
             )
         )
     if figures.match < LEAST_MATCH:
-        missing, beyond = plan.opened.difference(shown).area, shown.difference(plan.opened).area
+        missing, beyond = plan.opened.difference(seen).area, seen.difference(plan.opened).area
         problems.append(
             Problem.warning(
                 "pinned.target_missed",
@@ -309,6 +315,61 @@ def pins_apart(deployment: Deployment, nodes: Sequence[int], cell_mm: float, phi
     nearest = int(np.argmin(least))
     pair = [int(index[one[nearest]]), int(index[other[nearest]])]
     return math.sqrt(max(float(least[nearest]), 0.0)), pair
+
+
+def filled(shape: BaseGeometry, target: Polygon) -> BaseGeometry:
+    """The shape without openings, but for those at holes of a target: silhouettes are compared like this."""
+    whole = silhouette(shape)
+    if not target.interiors:
+        return whole
+    rings = np.array([Polygon(ring) for part in shapely.get_parts(shape) for ring in part.interiors], dtype=object)
+    holes = shapely.union_all([Polygon(ring) for ring in target.interiors])
+    return shapely.difference(whole, shapely.union_all(rings[shapely.intersects(rings, holes)]))
+
+
+def shown_holes(plan: PinnedPlan, bodies: Sequence[BaseGeometry], silhouette: BaseGeometry) -> tuple[TrimmedHole, ...]:
+    """How the pieces leave the holes of their target open."""
+    assembly = plan.assembly
+    placed = placed_bodies(assembly, bodies, assembly.phi_target)
+    places = assembly.poses(math.pi)[:, :2] / assembly.cell_mm
+    found = []
+    for ring in plan.opened.interiors:
+        hole = Polygon(ring)
+        x, y = places[int(np.argmax(shapely.area(shapely.intersection(placed, hole))))].tolist()
+        covered = hole.intersection(silhouette).area / hole.area
+        found.append(TrimmedHole(1.0 - covered, hole.area / assembly.cell_mm**2, (x, y)))
+    return tuple(found)
+
+
+def closed_holes(
+    holes: Sequence[TrimmedHole],
+    low: FloatArray,
+    cell_mm: float,
+    too_small: str = "trim.hole_too_small",
+    least: float = SMALL_HOLE,
+) -> list[Problem]:
+    """Warn of holes of the target that stay closed, and where on the flat sheet they would be.
+
+    Parameters
+    ----------
+    holes : sequence of TrimmedHole
+        All holes of the target.
+    low : (2,) float, unit cells
+        Of the frame of these places; problems count from there.
+    cell_mm : float
+    too_small : str
+        Code for holes below ``least``, unit cells squared.
+    """
+    problems = []
+    closed = [hole for hole in holes if hole.open < MOSTLY_OPEN]
+    for code, some in (
+        (too_small, [hole for hole in closed if hole.cells < least]),
+        ("trim.hole_holds_sheet", [hole for hole in closed if hole.cells >= least]),
+    ):
+        if some:
+            x, y = ((np.array(some[0].place) - low) * cell_mm).tolist()
+            problems.append(Problem.warning(code, (x, y), count=len(some), total=len(holes), x=x, y=y))
+    return problems
 
 
 def iou(one: BaseGeometry, other: BaseGeometry) -> float:

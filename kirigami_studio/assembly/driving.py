@@ -13,7 +13,7 @@ keep clear of each other over the whole motion; arms keep clear of each other an
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -43,13 +43,13 @@ from kirigami_studio.fabricate.drive import (
     SCREWS_MM,
     SHAFT_MM,
     SHORTEST_MM,
-    USUAL_MM,
     WALL_MM,
     WALL_SCREW_MM,
     DriveKind,
 )
 from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.mechanics.gripping import SoftMotions
 
 #: Layers of the parts, from the front: arms, the board, and the handle of a crank behind it.
 ARMS_LAYER, BOARD_LAYER, HANDLE_LAYER = 3, 4, 5
@@ -121,27 +121,65 @@ class DriveParts:
         return replace(self.assembly, pieces=pieces, hinges=self.assembly.hinges[new:])
 
 
-def driven(plan: PinnedPlan, kind: DriveKind) -> tuple[DriveParts | None, tuple[Problem, ...]]:
-    """Make the board and the arms of a drive, or say why there are none."""
+def driven(
+    plan: PinnedPlan, kind: DriveKind, softest: Callable[[], SoftMotions]
+) -> tuple[DriveParts | None, tuple[Problem, ...]]:
+    """Make the board and the arms of a drive, or say why there are none.
+
+    Of all pieces that can be fixed and led, those are taken that leave least of the softest motions, as grips are.
+
+    Parameters
+    ----------
+    plan : PinnedPlan
+    kind : DriveKind
+    softest : function
+        Finds the softest motions of the sheet; called only where there may be a drive.
+    """
     if kind is DriveKind.NONE:
         return None, ()
     if plan.options.pin_mm < LEAST_SCREW_MM:
         return None, (Problem.warning("drive.needs_screws", hole_mm=plan.options.pin_mm),)
-    for fixed, columns in _fixed_pieces(plan.assembly):
-        arms = _arms(plan, fixed, columns, kind)
-        if arms:
-            return _made(plan, kind, fixed, columns, arms), ()
+    ranked = _Ranked(plan.assembly, softest())
+    columns = _columns(plan.assembly)
+    places = {name: _parts_of(plan.assembly, plan.assembly.by_id[name])[0] for name in _pins(plan.assembly)}
+    pairs = [
+        (fixed, led)
+        for fixed in columns
+        for led in places
+        if led != fixed and SHORTEST_MM <= abs(places[led] - places[fixed]) <= LONGEST_MM
+    ]
+    beside: dict[str, list[Arm]] = {}
+    for fixed, led in sorted(pairs, key=ranked.left):
+        piece = plan.assembly.by_id[fixed]
+        if fixed not in beside:
+            beside[fixed] = _arms_beside(plan, piece, columns[fixed])
+        chosen = _arms(plan, beside[fixed], fixed, led, columns[fixed], kind, ranked)
+        if chosen:
+            return _made(plan, kind, piece, columns[fixed], chosen), ()
     return None, (Problem.warning("drive.no_room", shortest_mm=SHORTEST_MM, longest_mm=LONGEST_MM),)
 
 
-def _fixed_pieces(assembly: Assembly) -> Iterator[tuple[Piece, tuple[Hinge, Hinge]]]:
-    """Pieces of layer 2 with two pins that are farthest apart, the middle ones first."""
-    origins = dict(zip(assembly.by_id, assembly.poses(math.pi)[:, :2], strict=True))
-    middle = np.mean(list(origins.values()), axis=0)
-    pins = _pins(assembly)
-    for piece in sorted(assembly.pieces, key=lambda one: math.dist(origins[one.id], middle)):
-        if piece.layer == 2 and len(pins.get(piece.id, ())) > 1:
-            yield piece, max(combinations(pins[piece.id], 2), key=lambda pair: math.dist(pair[0].at[1], pair[1].at[1]))
+@dataclass(frozen=True, slots=True)
+class _Ranked:
+    """Pieces by the softest motions that they leave where they are held or led."""
+
+    assembly: Assembly
+    motions: SoftMotions
+
+    def left(self, names: Sequence[str]) -> float:
+        """Share of the motions that these pieces leave, rounded: equal pairs keep their order."""
+        columns = self.assembly.deployment.topology.columns + 1
+        panels = [row * columns + column for row, column in (self.assembly.by_id[name].panel for name in names)]
+        return round(1.0 - self.motions.taken(panels), 9)
+
+
+def _columns(assembly: Assembly) -> dict[str, tuple[Hinge, Hinge]]:
+    """Pieces of layer 2 with two pins that are farthest apart."""
+    return {
+        name: max(combinations(pins, 2), key=lambda pair: math.dist(pair[0].at[1], pair[1].at[1]))
+        for name, pins in _pins(assembly).items()
+        if len(pins) > 1
+    }
 
 
 def _pins(assembly: Assembly) -> dict[str, list[Hinge]]:
@@ -159,8 +197,8 @@ def _parts_of(assembly: Assembly, piece: Piece) -> tuple[complex, complex]:
     return complex(even[nodes].mean()) * assembly.cell_mm, complex(odd[nodes].mean()) * assembly.cell_mm
 
 
-def _arms(plan: PinnedPlan, fixed: Piece, columns: Sequence[Hinge], kind: DriveKind) -> tuple[Arm, ...]:
-    """An arm to turn and, where there is room, one that follows; none where there is no room."""
+def _arms_beside(plan: PinnedPlan, fixed: Piece, columns: Sequence[Hinge]) -> list[Arm]:
+    """Arms that keep clear of the columns of a fixed piece, those with near pivots first."""
     assembly = plan.assembly
     odd = as_plane(assembly.deployment.odd_part) * assembly.cell_mm
     even_fixed, odd_fixed = _parts_of(assembly, fixed)
@@ -177,18 +215,30 @@ def _arms(plan: PinnedPlan, fixed: Piece, columns: Sequence[Hinge], kind: DriveK
             if min(_distance_to_swept(complex(post), pivot, reach, opening) for post in posts) >= clear:
                 ends = as_points(np.array([pivot, reach]))
                 found.append(Arm(name, hinge, ends[0], ends[1]))
-    found.sort(key=lambda arm: abs(arm.length_mm - USUAL_MM) + 0.5 * float(np.hypot(*arm.pivot)))
-    for arm in found:
-        if _board_cuts(columns, (arm,), kind, plan.options.pin_mm) is None:
-            continue
-        for other in found:
-            pair = (arm, other)
-            if other.piece == arm.piece or _least_distance(arm, other, opening) < ARM_MM + ROOM_MM:
-                continue
-            if _board_cuts(columns, pair, kind, plan.options.pin_mm) is not None:
-                return pair
-        return (arm,)
-    return ()
+    return sorted(found, key=lambda arm: float(np.hypot(*arm.pivot)))
+
+
+def _arms(
+    plan: PinnedPlan,
+    beside: Sequence[Arm],
+    fixed: str,
+    led: str,
+    columns: Sequence[Hinge],
+    kind: DriveKind,
+    ranked: _Ranked,
+) -> tuple[Arm, ...]:
+    """An arm that leads a piece, and one that follows where there is room; none without room."""
+    opening, pin = math.pi - plan.assembly.phi_target, plan.options.pin_mm
+    turned = [arm for arm in beside if arm.piece == led and _board_cuts(columns, (arm,), kind, pin) is not None]
+    others = list(dict.fromkeys(arm.piece for arm in beside if arm.piece != led))
+    for name in sorted(others, key=lambda other: ranked.left((fixed, led, other))) if turned else ():
+        for arm in turned:
+            for other in (one for one in beside if one.piece == name):
+                if _least_distance(arm, other, opening) < ARM_MM + ROOM_MM:
+                    continue
+                if _board_cuts(columns, (arm, other), kind, pin) is not None:
+                    return arm, other
+    return tuple(turned[:1])
 
 
 def _distance_to_swept(point: complex, pivot: complex, reach: complex, opening: float) -> float:

@@ -20,7 +20,7 @@ import numpy.typing as npt
 import shapely
 
 from kirigami_studio.evaluate.boundary import as_plane, as_points
-from kirigami_studio.evaluate.kept_panels import all_panels
+from kirigami_studio.evaluate.kept_panels import PanelTable, all_panels
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 
@@ -38,6 +38,8 @@ class LayerMotion:
 
     Attributes
     ----------
+    panel : (P,) int
+        Their numbers in the sheet, of which some panels may be cut away.
     corners : (P, 4) complex, mm
         Flat: top, left, bottom, right.
     nodes : (P, 4) int
@@ -56,6 +58,7 @@ class LayerMotion:
         t at the target angle.
     """
 
+    panel: IntArray
     corners: ComplexArray
     nodes: IntArray
     hinged: BoolArray
@@ -66,13 +69,21 @@ class LayerMotion:
     opening: float
 
     @classmethod
-    def of(cls, deployment: Deployment, cell_mm: float, phi_target: float, in_one_plane: bool = False) -> LayerMotion:
-        """The motion of a design from flat to its target angle."""
-        panels = all_panels(*deployment.sheet.grid)
+    def of(
+        cls,
+        deployment: Deployment,
+        cell_mm: float,
+        phi_target: float,
+        in_one_plane: bool = False,
+        panels: PanelTable | None = None,
+    ) -> LayerMotion:
+        """The motion of a design, or of some of its panels, from flat to its target angle."""
+        panels = panels or all_panels(*deployment.sheet.grid)
         even, odd = as_plane(deployment.even_part) * cell_mm, as_plane(deployment.odd_part) * cell_mm
         first = panels.corners[:, 0]
         layer = np.where(panels.even, 1, 2)
         return cls(
+            panel=panels.index,
             corners=(even + odd)[panels.corners],
             nodes=panels.corners,
             hinged=panels.hinged,

@@ -22,6 +22,7 @@ from kirigami_studio.lattice.deployment import rotate
 
 #: rectpack counts whole numbers: units to the mm.
 UNITS = 1000
+
 #: Ways of packing that are tried; the one with the fewest beds and the least of the last one is taken.
 WAYS = tuple(product((rectpack.MaxRectsBaf, rectpack.MaxRectsBl), (rectpack.SORT_AREA, rectpack.SORT_SSIDE)))
 #: By how much a block is made larger until it holds everything, and where it begins: shares of the area of all
@@ -155,29 +156,25 @@ def _packed(rectangles: Sequence[tuple[int, int, int]], room: tuple[float, ...])
 
     Those of the last one lie in a small block, not in a long strip.
     """
-    if min(room) > 0.0:
-        width, height = (math.floor(side * UNITS) for side in room)
-        tried = (_tried(rectangles, way, width, height, len(rectangles)) for way in WAYS)
-        beds = min((one for one in tried if one is not None), key=_cost)
-        last = {number for *_, number in beds[-1]}
-        block = _block([one for one in rectangles if one[2] in last], width, height)
-        return [*beds[:-1], beds[-1] if block is None else block]
-    block = _block(rectangles, *(math.floor(side * UNITS) if side else math.inf for side in room))
-    assert block is not None  # a bed without an end has room for everything
-    return [block]
+    width, height = (math.floor(side * UNITS) if side > 0.0 else math.inf for side in room)
+    if sum(wide * high for wide, high, _ in rectangles) <= width * height:
+        block = _block(rectangles, width, height)
+        if block is not None:  # always on a bed without an end
+            return [block]
+    beds = min((_on_beds(rectangles, way, int(width), int(height)) for way in WAYS), key=_cost)
+    last = {number for *_, number in beds[-1]}
+    block = _block([one for one in rectangles if one[2] in last], width, height)
+    return [*beds[:-1], beds[-1] if block is None else block]
 
 
-def _tried(
-    rectangles: Sequence[tuple[int, int, int]], way: tuple[Any, Any], width: int, height: int, beds: int
-) -> _Packed | None:
-    """One way of packing; None where something found no room."""
+def _on_beds(rectangles: Sequence[tuple[int, int, int]], way: tuple[Any, Any], width: int, height: int) -> _Packed:
+    """One way of packing rectangles, which all fit on a bed, on as many as it takes."""
     packer = rectpack.newPacker(pack_algo=way[0], sort_algo=way[1], rotation=True)
     for rectangle in rectangles:
         packer.add_rect(*rectangle)
-    packer.add_bin(width, height, beds)
+    packer.add_bin(width, height, len(rectangles))
     packer.pack()
-    found = [[(one.x, one.y, one.width, one.height, one.rid) for one in bed] for bed in packer]
-    return found if sum(map(len, found)) == len(rectangles) else None
+    return [bed.rect_list() for bed in packer]
 
 
 def _block(rectangles: Sequence[tuple[int, int, int]], width: float, height: float) -> list[Any] | None:
@@ -189,13 +186,21 @@ def _block(rectangles: Sequence[tuple[int, int, int]], width: float, height: flo
         wide = min(side, width)
         high = min(max(area / wide, longest), height)
         wide = min(max(area / high, longest), width)
-        found = [_tried(rectangles, way, math.ceil(wide), math.ceil(high), 1) for way in WAYS]
+        found = [_in_block(rectangles, way, math.ceil(wide), math.ceil(high)) for way in WAYS]
         packed = [one for one in found if one is not None]
         if packed:
-            return min(packed, key=_cost)[0]
+            return min(([one] for one in packed), key=_cost)[0]
         if wide == width and high == height:
             return None
         area *= GROWTH
+
+
+def _in_block(
+    rectangles: Sequence[tuple[int, int, int]], way: tuple[Any, Any], width: int, height: int
+) -> list[Any] | None:
+    """One way of packing rectangles in a block; None as soon as one finds no room."""
+    block = way[0](width, height)
+    return block.rect_list() if all(block.add_rect(*one) for one in way[1](rectangles)) else None
 
 
 def _cost(beds: _Packed) -> tuple[int, int]:

@@ -8,13 +8,13 @@ by +a (Eq. 1), so that those of one layer never turn against each other.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment, check_phi, rotate
 
 
@@ -57,6 +57,8 @@ class Piece:
         Largest height of the number there.
     marks : tuple of (K, 2) float, mm
         Open lines to engrave, where tabs are stuck on.
+    drawn : tuple of (K, 2) float, mm
+        Lines of artwork on its front; a closed one repeats its first point.
     pivot : (2,) float or None, mm
         Of an arm: its origin in the frame of its panel's piece, about which it turns as the other layer does.
     """
@@ -70,6 +72,7 @@ class Piece:
     label_at: FloatArray | tuple[float, float] = (0.0, 0.0)
     label_mm: float = 3.0
     marks: tuple[FloatArray, ...] = ()
+    drawn: tuple[FloatArray, ...] = ()
     pivot: FloatArray | None = None
 
 
@@ -117,10 +120,21 @@ class Assembly:
         """Pieces by their ids."""
         return {piece.id: piece for piece in self.pieces}
 
+    @cached_property
+    def numbers(self) -> IntArray:
+        """Numbers (P,) of the pieces' panels in the sheet, row by row."""
+        rows, columns = np.array([piece.panel for piece in self.pieces], dtype=np.int64).T
+        return np.asarray(rows * (self.deployment.topology.columns + 1) + columns)
+
+    def piece_on(self, panel: int) -> Piece:
+        """The first piece on the panel of a number."""
+        return self.pieces[int(np.argmax(self.numbers == panel))]
+
     @property
     def left_out(self) -> int:
-        """How many nodes that two panels share have no pin."""
-        return len(np.unique(self.deployment.topology.void_nodes)) - len(self.hinges)
+        """How many nodes that two panels with pieces share have no pin."""
+        nodes = self.deployment.topology.panel_nodes.reshape(-1, 4)[np.unique(self.numbers)]
+        return int(np.count_nonzero(np.bincount(nodes.ravel()) > 1)) - len(self.hinges)
 
     def poses(self, phi: float) -> FloatArray:
         """Place of every piece at angle ``phi``, in the order of the pieces.
@@ -141,7 +155,16 @@ class Assembly:
                 turns[index] = -turns[index]
         return np.column_stack([origins, turns])
 
+    def placing(self, phi: float) -> Callable[[Piece, FloatArray], FloatArray]:
+        """What carries points (..., 2) of a piece's frame to their places at ``phi``, mm."""
+        poses = dict(zip(self.pieces, self.poses(phi).tolist(), strict=True))
+
+        def placed(piece: Piece, points: FloatArray) -> FloatArray:
+            x, y, turn = poses[piece]
+            return np.asarray(rotate(points, turn) + np.array([x, y]))
+
+        return placed
+
     def placed(self, piece: Piece, points: FloatArray, phi: float) -> FloatArray:
         """Carry points (..., 2) of a piece's frame to their places at ``phi``, mm."""
-        x, y, turn = self.poses(phi)[self.pieces.index(piece)]
-        return np.asarray(rotate(points, turn) + np.array([x, y]))
+        return self.placing(phi)(piece, points)

@@ -10,6 +10,7 @@ import shapely
 from shapely import affinity
 from shapely.geometry import Polygon
 
+from kirigami_studio.assembly.cut_away import panels_left, pins_in_holes
 from kirigami_studio.assembly.motion import LayerMotion
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
@@ -101,24 +102,30 @@ def pinned(
     scale = math.sqrt(1.0 + margin * (shown.length + math.pi * margin) / shown.area)
     x, y = design.pose.shift
     pose = replace(design.pose, scale=design.pose.scale / scale, shift=(x / scale, y / scale))
-    shown = Polygon(pose.inverse().apply(target.points) * cell_mm)
+    shown = shapely.transform(target.polygon, lambda points: pose.inverse().apply(points) * cell_mm)
+    panels = panels_left(design, shown, cell_mm, options)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
     with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
-        needless = () if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, shown)
-        shaping = Shaping.of(deployment, cell_mm, phi, options, needless)
+        unwanted = pins_in_holes(deployment, phi, shown, cell_mm, options)
+        needless = [] if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
+        shaping = Shaping.of(deployment, cell_mm, phi, options, panels, unwanted, needless)
         if only_whole and shaping.broken:
             first = piece_names(shaping.motion)[min(shaping.broken)]
             raise FabricationError("pinned.falls_apart", piece=first, count=len(shaping.broken))
-        opened = EndState.of(deployment, phi, cell_mm, shown, options.reach_mm)
-        closed = EndState.of(deployment, math.pi, cell_mm, flat, options.reach_mm)
+        opened = EndState.of(deployment, panels, phi, cell_mm, shown, options.reach_mm)
+        closed = EndState.of(deployment, panels, math.pi, cell_mm, flat, options.reach_mm)
         spare = (1.0 - options.least_flat) * flat.area
-        trim_to(shaping, opened, closed, MOST_LOST * spare if options.weight >= 0.5 else 0.0)
+        # Of the flat outline of a cover there is no more than its trim leaves.
+        most = math.inf if design.trim is not None and design.trim.given_up else MOST_LOST * spare
+        trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)
         trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
         extend_to(shaping, opened, closed, 0.0)
         extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
         if options.weight > 0.5:
             extend_to(shaping, opened, closed, MOST_BEYOND * (spare - closed.missing(shaping)))
         round_off(shaping, (opened, closed))
+        if shown.interiors:  # necks that lead through holes may be joined by what was added
+            trim_to(shaping, opened, closed, 0.0)
     assembly = assembled(shaping, deployment, cell_mm, phi)
     names = [piece.id for piece in assembly.pieces]
     ears, _, distance = shaping.ear_distances
@@ -180,7 +187,7 @@ def assembled(shaping: Shaping, deployment: Deployment, cell_mm: float, phi: flo
             Piece(
                 id=name,
                 layer=layer,
-                panel=(index // columns, index % columns),
+                panel=divmod(int(motion.panel[index]), columns),
                 outline=shapely.get_coordinates(shape.exterior)[:-1],
                 holes=tuple(RoundHole(pin, options.pin_mm) for pin in pins[hinged]),
                 openings=tuple(shapely.get_coordinates(ring)[:-1] for ring in shape.interiors),

@@ -51,7 +51,8 @@ USUAL_FACE: Shade = (212, 214, 218)
 BRASS: Shade = (206, 165, 74)
 STEEL: Shade = (176, 182, 189)
 STEEL_PINS = frozenset({Fastener.M2, Fastener.M3, Fastener.RIVET})
-#: How bright the lowest layer is, lying in the shade of the others, lines round faces and numbers, against the top.
+#: How bright the lowest layer is, lying in the shade of the others, lines round faces, and what stands on them, against
+#: the top.
 LOWEST, LINE, NUMBER = 0.86, 0.52, 0.25
 #: The rim of a head, and the spot of light on it.
 HEAD_RIM, GLINT = 0.62, 1.28
@@ -217,6 +218,14 @@ class PosedPieces:
         """Corners of all pieces at an angle: (P, 2) world."""
         return np.concatenate(self.outlines(phi))
 
+    def drawn(self, phi: float) -> list[list[FloatArray]]:
+        """Lines of artwork (L, 2) on every piece at an angle, world."""
+        factors, shifts = self.places(phi)
+        return [
+            [as_points(factor * as_plane(line) + shift) for line in piece.drawn]
+            for piece, factor, shift in zip(self.assembly.pieces, factors, shifts, strict=True)
+        ]
+
     def heads(self, phi: float) -> FloatArray:
         """Where the heads of pins are at an angle: (H, 2) world; none where they have none."""
         if not self.head_mm:
@@ -245,7 +254,13 @@ class PosedPieces:
         finest = share * float(np.ptp(self.assembly.deployment.compact[:, 0])) * self.assembly.cell_mm
         lines = shapely.simplify([shapely.LinearRing(piece.outline) for piece in self.assembly.pieces], finest)
         pieces = tuple(
-            replace(piece, outline=shapely.get_coordinates(line)[:-1])
+            replace(
+                piece,
+                outline=shapely.get_coordinates(line)[:-1],
+                drawn=tuple(
+                    shapely.get_coordinates(shapely.simplify(shapely.LineString(one), finest)) for one in piece.drawn
+                ),
+            )
             for piece, line in zip(self.assembly.pieces, lines, strict=True)
         )
         return replace(self, assembly=replace(self.assembly, pieces=pieces))

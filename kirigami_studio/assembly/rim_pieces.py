@@ -17,10 +17,12 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.assembly.cut_away import kept_voids, rim_loops
 from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
 from kirigami_studio.assembly.shaping import OVERLAP, ZONE_CHORDS, Shaping, less, shared, united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.evaluate.kept_panels import PanelTable
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
 
 #: Parts smaller than this, mm2, are neither cut off nor added.
@@ -65,11 +67,24 @@ class EndState:
     shares: GeometryArray
 
     @classmethod
-    def of(cls, deployment: Deployment, phi: float, cell_mm: float, outline: Polygon, reach_mm: float) -> EndState:
-        """The state of a design at ``phi``."""
-        voids = polygons(as_plane(deployment.voids(phi)).reshape(-1, 4) * cell_mm)
-        voids = voids[shapely.area(voids) > LEAST_PART]
-        return cls(math.pi - phi, outline, shapely.union_all(voids), _rim_shares(deployment, phi, cell_mm, reach_mm))
+    def of(
+        cls,
+        deployment: Deployment,
+        panels: PanelTable,
+        phi: float,
+        cell_mm: float,
+        outline: Polygon,
+        reach_mm: float,
+    ) -> EndState:
+        """The state of some panels of a design at ``phi``; where others are cut away the flat sheet is open."""
+        nodes = as_plane(deployment.nodes(phi)) * cell_mm
+        voids = deployment.topology.void_nodes[kept_voids(panels, deployment.sheet.grid)]
+        openings = polygons(nodes[voids])
+        if phi == math.pi:
+            every = deployment.topology.panel_nodes.reshape(-1, 4)
+            openings = np.append(openings, polygons(nodes[np.delete(every, panels.index, axis=0)]))
+        openings = openings[shapely.area(openings) > LEAST_PART]
+        return cls(math.pi - phi, outline, shapely.union_all(openings), _rim_shares(nodes, panels, reach_mm))
 
     def missing(self, shaping: Shaping) -> float:
         """Area, mm2, of the outline that lies outside of the silhouette of all pieces, holes filled."""
@@ -81,28 +96,37 @@ def silhouette(shape: BaseGeometry) -> BaseGeometry:
     return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(shape)])
 
 
-def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: float) -> GeometryArray:
-    """Panels at the rim with the strip outside of each, between bisectors of the rim's angles."""
-    tables, nodes = deployment.topology, as_plane(deployment.nodes(phi)) * cell_mm
-    panel_nodes = tables.panel_nodes.reshape(-1, 4)
-    side_owner = {
-        (int(corners[k - 1]), int(corners[k])): number for number, corners in enumerate(panel_nodes) for k in range(4)
-    }
-    loop = tables.outline_nodes
-    owner = np.array([side_owner[side] for side in zip(loop.tolist(), np.roll(loop, -1).tolist(), strict=True)])
-    start, end = nodes[loop], nodes[np.roll(loop, -1)]
-    # Sides inside of the outline are those of hinges that have zipped shut, and of closed mouths.
-    outline = Polygon(as_points(start)).buffer(0.0)
-    middle = shapely.points(as_points(0.5 * (start + end)))
-    outside = (np.abs(end - start) > TOUCHING) & (shapely.distance(outline.boundary, middle) < TOUCHING)
-    owner, start, end = owner[outside], start[outside], end[outside]
+def _rim_shares(nodes: ComplexArray, panels: PanelTable, reach_mm: float) -> GeometryArray:
+    """Panels at rims, those of holes too, with the strip outside of each, between bisectors of the rim's angles."""
+    shares = np.full(len(panels.index), Polygon(), dtype=object)
+    for loop in rim_loops(panels):
+        owner, corner = loop.T
+        start, end = nodes[panels.corners[owner, corner]], nodes[panels.corners[owner, (corner + 1) % 4]]
+        # Sides inside of the outline are those of hinges that have zipped shut, and of closed mouths.
+        outline = Polygon(as_points(start)).buffer(0.0)
+        middle = shapely.points(as_points(0.5 * (start + end)))
+        outside = (np.abs(end - start) > TOUCHING) & (shapely.distance(outline.boundary, middle) < TOUCHING)
+        if len(np.unique(owner[outside])) > 1:
+            _add_shares(shares, nodes, panels, reach_mm, owner[outside], start[outside], end[outside])
+    return shares
+
+
+def _add_shares(
+    shares: GeometryArray,
+    nodes: ComplexArray,
+    panels: PanelTable,
+    reach_mm: float,
+    owner: IntArray,
+    start: ComplexArray,
+    end: ComplexArray,
+) -> None:
+    """Add to the shares of panels those at one rim, whose sides (L,) run from ``start`` to ``end``."""
     first = int(np.argmax(owner != np.roll(owner, 1)))
     owner, start, end = (np.roll(values, -first) for values in (owner, start, end))
     breaks = np.flatnonzero(owner != np.roll(owner, 1))
     outward = -1j * (end - start) / np.abs(end - start)
     between = outward[breaks] + outward[breaks - 1]
     ray = reach_mm * between / np.maximum(np.abs(between), TOUCHING)
-    shares = np.full(len(panel_nodes), Polygon(), dtype=object)
     for place, (begin, after) in enumerate(zip(breaks, np.append(breaks[1:], len(owner)), strict=True)):
         chain = np.append(start[begin:after], end[after - 1])
         rays = chain[0] + np.array([0.0, ray[place]]), chain[-1] + np.array([0.0, ray[(place + 1) % len(breaks)]])
@@ -113,9 +137,8 @@ def _rim_shares(deployment: Deployment, phi: float, cell_mm: float, reach_mm: fl
         else:
             far = np.array([rays[1][1], rays[0][1]])
         strip = shapely.make_valid(Polygon(as_points(np.append(chain, far))))
-        panel = Polygon(as_points(nodes[panel_nodes[owner[begin]]]))
+        panel = Polygon(as_points(nodes[panels.corners[owner[begin]]]))
         shares[owner[begin]] = shapely.union_all([shares[owner[begin]], strip, panel.buffer(OVERLAP)])
-    return shares
 
 
 def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) -> None:
@@ -128,8 +151,10 @@ def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) ->
     other : EndState
         The other end, where what is cut off is missing.
     spare : float, mm2
-        How much the silhouette there may lose; gaps inside of it count less, see :data:`GAPS`.
+        How much the silhouette there may lose; gaps inside of it count less, see :data:`GAPS`, and what is cut along
+        the rim of a hole not at all, for the flat sheet is open there, too.
     """
+    holes = np.array([shapely.union_all([Polygon(ring) for ring in state.outline.interiors])], dtype=object)
     motion, keep = shaping.motion, shaping.options.keep_mm
     outside = shapely.area(shapely.difference(shaping.placed(state.turn), state.outline))
     shown = _Shown(shaping, other) if math.isfinite(spare) else None
@@ -140,8 +165,11 @@ def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) ->
         mine = motion.brought_back(np.array([state.outline], dtype=object), here, state.turn)[0]
         body = shaping.bodies[index]
         walls = shapely.union_all(discs(motion.corners[index][motion.hinged[index]], keep))
-        for one in _cut(shaping, index, mine, united(shared(body, mine), shared(body, walls))):
-            if shown is None or shown.gives(index, less(body, one), spare):
+        hole = motion.brought_back(holes, here, state.turn)[0]
+        in_hole = shared(body, hole).area > LEAST_PART
+        counts = less(body, hole) if in_hole else body
+        for one in _cut(shaping, index, mine, united(shared(body, mine), shared(body, walls)), in_hole):
+            if shown is None or shown.gives(index, less(counts, one), spare):
                 shaping.bodies[index] = one
                 break
 
@@ -171,10 +199,10 @@ class _Shown:
         placed = self._shaping.motion.placed(np.array([cut], dtype=object), here, self._state.turn)[0]
         beside = self._near.query(placed, predicate="intersects")
         bare = less(placed, united(*self._placed[beside[beside != index]]))
-        if self.bare + bare.area > GAPS * spare:
-            return False
         whole, missed = self._whole, self._missed
         if bare.area >= LEAST_PART:
+            if self.bare + bare.area > GAPS * spare:
+                return False
             whole = less(whole, bare)
             missed = self._missing(whole)
         if missed - self._missed > spare - self.lost:
@@ -190,7 +218,9 @@ class _Shown:
         return float(less(self._state.outline, silhouette(whole)).area)
 
 
-def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry) -> Iterator[Polygon]:
+def _cut(
+    shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry, to_necks: bool = False
+) -> Iterator[Polygon]:
     """Bodies of a piece cut along an outline, its outer pins joined, then farther and farther.
 
     Parameters
@@ -201,15 +231,20 @@ def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry)
         The outline's area, seen from the piece.
     wanted : geometry
         What of the piece is in it, and its walls.
+    to_necks : bool
+        Whether necks alone may stay.
     """
     motion, body = shaping.motion, shaping.bodies[index]
     whole = shaping.held_together(index, wanted)
-    if whole is None:
-        pins = as_points(motion.corners[index][motion.hinged[index]])
-        links = shortest_links(body, pins, mine, 0.5 * float(shaping.neck_mm[index]))
-        whole = shaping.held_together(index, united(wanted, shared(body, links)))
-        whole = None if whole is None or whole.area < LEAST_KEPT * body.area else whole
-    if whole is not None:
+    linked = whole is None
+    pins, half = as_points(motion.corners[index][motion.hinged[index]]), 0.5 * float(shaping.neck_mm[index])
+    # In a hole they are nowhere hidden: as near to its rim as there is a way.
+    for beyond in (*BEYOND_MM, math.inf) if to_necks else (math.inf,):
+        if whole is None:
+            room = body if beyond == math.inf else shared(body, united(wanted, mine.buffer(beyond)))
+            links = shortest_links(room, pins, mine, half)
+            whole = shaping.held_together(index, united(wanted, shared(body, links)))
+    if whole is not None and (to_necks or not linked or whole.area >= LEAST_KEPT * body.area):
         yield whole
     for beyond in BEYOND_MM:
         whole = shaping.held_together(index, united(wanted, shared(body, mine.buffer(beyond))))
@@ -217,14 +252,14 @@ def _cut(shaping: Shaping, index: int, mine: BaseGeometry, wanted: BaseGeometry)
             yield whole
 
 
-def shortest_links(body: Polygon, pins: FloatArray, inside: BaseGeometry, half_mm: float) -> BaseGeometry:
+def shortest_links(body: BaseGeometry, pins: FloatArray, inside: BaseGeometry, half_mm: float) -> BaseGeometry:
     """Necks that join the pins of a piece and its largest part in an area, the shortest outside.
 
     They follow the middles of the sides of triangles that the piece is divided in, where it has a neck's width.
 
     Parameters
     ----------
-    body : Polygon
+    body : geometry
     pins : (K, 2) float, mm
     inside : geometry
     half_mm : float
@@ -321,7 +356,7 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
         missing = missing.buffer(-seam, join_style="mitre").buffer(seam, join_style="mitre")
     gaps = shapely.get_parts(missing)
     gaps = gaps[shapely.area(gaps) > LEAST_PART]
-    rims = shapely.intersects(gaps, state.outline.exterior)
+    rims = shapely.intersects(gaps, state.outline.boundary)
     for by_shares in (True, False):
         piece, gap = shapely.STRtree(gaps).query(shaping.placed(state.turn), predicate="dwithin", distance=TOUCHED)
         worth = np.bincount(piece, shapely.area(gaps)[gap], len(placed))

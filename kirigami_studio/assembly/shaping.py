@@ -15,6 +15,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.assembly.motion import GeometryArray, LayerMotion, discs, polygons, swept_discs, swept_hulls
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.evaluate.kept_panels import PanelTable
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
 
@@ -104,7 +105,7 @@ class Shaping:
     def __post_init__(self) -> None:
         planes = np.unique(self.motion.plane).tolist()
         members = {plane: np.flatnonzero(self.motion.plane == plane) for plane in planes}
-        self._parts = {plane: _ConvexParts(one, self.motion.corners[one]) for plane, one in members.items()}
+        self._parts = {plane: _ConvexParts.of(one, self.motion.corners[one]) for plane, one in members.items()}
         self.neck_mm = np.full(len(self.motion.layer), self.options.neck_mm)
         self.ear_radius = np.full(self.motion.corners.shape, 0.5 * self.options.ear_mm)
         self.bodies = np.full(len(self.motion.layer), Polygon(), dtype=object)
@@ -116,15 +117,18 @@ class Shaping:
         cell_mm: float,
         phi_target: float,
         options: PinOptions,
+        panels: PanelTable | None = None,
+        unwanted: Sequence[int] = (),
         needless: Sequence[int] = (),
     ) -> Shaping:
-        """Panels with ears, less what the ears of their neighbours sweep.
+        """Panels, all or some, with ears, less what the ears of their neighbours sweep.
 
+        Pins of ``unwanted`` nodes are left out first, one after the other, as long as the sheet keeps its one motion.
         Pins without wall or neck are left out as long as the sheet keeps its one motion: their ears cut nothing then.
         So are those at ``needless`` nodes, the first ones first: after them, or before them where that leaves fewer
         necks narrow.
         """
-        motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane)
+        motion = LayerMotion.of(deployment, cell_mm, phi_target, options.in_one_plane, panels).without(unwanted)
         known: dict[_Notching, _Notched] = {}
         made = cls._made(deployment, motion, options, known)
         fewer = made.motion.without(needless)
@@ -193,7 +197,7 @@ class Shaping:
             own = discs(self._straps.centre[self._straps.ear == ear], self._straps.radius)
             plane = int(motion.plane[ear // 4])
             hull = Polygon(shapely.get_coordinates(shapely.union_all(own).convex_hull))
-            self._parts[plane] = self._parts[plane].with_more(ear // 4, _convex_parts(hull))
+            self._parts[plane] = self._parts[plane].with_more(ear // 4, np.array([hull], dtype=object))
         for index, one in enumerate(notched):
             self._find_weak(index, self._most_pinned(index, one.shape) if one.held is None else one.held)
             self.bodies[index] = self._held_narrowly(index, one.shape) if one.held is None else one.held
@@ -276,15 +280,17 @@ class Shaping:
             return strips
         lines: list[ComplexArray] = []
         owners: list[IntArray] = []
-        upper: IntArray = np.arange(len(motion.layer)).reshape(-1, columns + 1)[:-1, :-1]
+        place = np.full(ratios.size + sum(ratios.shape) + 1, -1)
+        place[motion.panel] = np.arange(len(motion.panel))
+        upper: IntArray = np.arange(len(place)).reshape(-1, columns + 1)[:-1, :-1]
         # Around a void: upper left with its lower right side, and so on; (panel, first corner, second corner).
         long_diagonal = [(upper, 2, 3), (upper + columns + 2, 0, 1)]
         short_diagonal = [(upper + 1, 1, 2), (upper + columns + 1, 3, 0)]
         for pair, longer in ((long_diagonal, ratios < 1.0), (short_diagonal, ratios > 1.0)):
             for panel, start, end in pair:
-                corners = motion.corners[panel[longer]]
-                lines.append(corners[:, [start, end]])
-                owners.append(panel[longer])
+                owner = place[panel[longer]]
+                owners.append(owner[owner >= 0])
+                lines.append(motion.corners[owners[-1]][:, [start, end]])
         sides = np.asarray(shapely.linestrings(as_points(np.concatenate(lines))), dtype=object)
         wide = shapely.buffer(sides, 0.5 * self.options.side_mm, cap_style="flat")
         return _united_by(wide, np.concatenate(owners), len(strips))
@@ -426,6 +432,8 @@ class Shaping:
         both = united(body, room)
         if (wide := self._between_necks(index, both)) is None:
             return None
+        if wide.covers(both):
+            return self._tidied(both), room
         frame = wide if wide.covers(body) else united(wide, body)
         whole = shared(both, frame)
         return self._tidied(whole), room if both.area - whole.area < TOO_SMALL else shared(room, frame)
@@ -433,9 +441,8 @@ class Shaping:
     def add(self, index: int, shape: Polygon, added: BaseGeometry) -> None:
         """Give a piece a larger shape; the part ``added`` counts for all that pass it later."""
         new = shapely.get_parts(added)
-        parts = [convex for part in new[shapely.area(new) > TOO_SMALL] for convex in _convex_parts(part)]
         plane = int(self.motion.plane[index])
-        self._parts[plane] = self._parts[plane].with_more(index, parts)
+        self._parts[plane] = self._parts[plane].with_more(index, new[shapely.area(new) > TOO_SMALL])
         self.bodies[index] = shape
 
     def placed(self, turn: float) -> GeometryArray:
@@ -495,32 +502,52 @@ class _Straps:
         return number, seen[np.concatenate([np.zeros(0, dtype=np.int64), *pairs])]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
 class _ConvexParts:
-    """Convex polygons that sweep with pieces of one layer.
+    """Convex polygons that sweep with pieces of one layer."""
 
-    Attributes
-    ----------
-    owner : (C,) int
-    corners : (C, K) complex, mm
-        The last one repeated where there are fewer.
-    centre : (C,) complex, mm
-    radius : (C,) float, mm
-        Of a circle round each.
-    """
+    owner: IntArray  #: (C,)
+    corners: ComplexArray  #: (C, K), mm; the last one repeated where there are fewer
+    centre: ComplexArray  #: (C,), mm
+    radius: FloatArray  #: (C,), mm; of a circle round each
 
-    def __init__(self, owner: IntArray, corners: ComplexArray) -> None:
-        self.owner, self.corners = owner, corners
-        self.centre = corners.mean(axis=1)
-        self.radius = np.abs(corners - self.centre[:, None]).max(axis=1)
+    @classmethod
+    def of(cls, owner: IntArray, corners: ComplexArray) -> _ConvexParts:
+        """Polygons by their corners."""
+        centre = corners.mean(axis=1)
+        return cls(owner, corners, centre, np.abs(corners - centre[:, None]).max(axis=1))
 
-    def with_more(self, owner: int, parts: Sequence[ComplexArray]) -> _ConvexParts:
-        """These polygons and others of one piece."""
-        if not parts:
+    def with_more(self, owner: int, shapes: GeometryArray) -> _ConvexParts:
+        """These polygons, and convex ones that cover small shapes of one piece."""
+        if not len(shapes):
             return self
-        width = max(self.corners.shape[1], *map(len, parts))
-        more = np.array([[*part, *[part[-1]] * (width - len(part))] for part in parts])
+        points, number = shapely.get_coordinates(_covered_by_convex(shapes), return_index=True)
+        inner = np.append(number[1:] == number[:-1], False)  # rings end where they begin
+        corners, counts = as_plane(points[inner]), np.bincount(number[inner])
+        width = max(self.corners.shape[1], int(counts.max()))
+        place = np.minimum(np.arange(width), counts[:, None] - 1) + (np.cumsum(counts) - counts)[:, None]
+        more = _ConvexParts.of(np.full(len(counts), owner), corners[place])
         here = np.pad(self.corners, ((0, 0), (0, width - self.corners.shape[1])), mode="edge")
-        return _ConvexParts(np.append(self.owner, np.full(len(parts), owner)), np.concatenate([here, more]))
+        return _ConvexParts(
+            np.concatenate([self.owner, more.owner]),
+            np.concatenate([here, more.corners]),
+            np.concatenate([self.centre, more.centre]),
+            np.concatenate([self.radius, more.radius]),
+        )
+
+
+def _covered_by_convex(shapes: GeometryArray) -> GeometryArray:
+    """Convex polygons that cover small shapes: coarse hulls, or triangles of shapes that are far from convex."""
+    hulls = shapely.convex_hull(shapes)
+    compact = shapely.area(hulls) < 1.25 * shapely.area(shapes)
+    grown = shapely.buffer(np.where(compact, hulls, shapes), COARSE, join_style="mitre")
+    coarse = shapely.simplify(grown, COARSE)
+    triangles = [
+        one if whole else shapely.constrained_delaunay_triangles(one)
+        for one, whole in zip(coarse, compact, strict=True)
+    ]
+    found: GeometryArray = shapely.get_parts(np.array(triangles, dtype=object))
+    return found
 
 
 def less(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
@@ -568,17 +595,6 @@ def _tidy(part: Polygon, least_hole: float) -> Polygon:
         if simple.is_valid and isinstance(simple, Polygon) and not simple.is_empty:
             return simple
     return part
-
-
-def _convex_parts(part: Polygon) -> list[ComplexArray]:
-    """Convex polygons that cover a small part."""
-    hull = part.convex_hull
-    if hull.area < 1.25 * part.area:
-        coarse: BaseGeometry = shapely.simplify(shapely.buffer(hull, COARSE, join_style="mitre"), COARSE)
-    else:
-        rounded = shapely.simplify(shapely.buffer(part, COARSE, join_style="mitre"), COARSE)
-        coarse = shapely.constrained_delaunay_triangles(rounded)
-    return [as_plane(shapely.get_coordinates(one)[:-1]) for one in shapely.get_parts(coarse)]
 
 
 def _largest(shape: BaseGeometry) -> Polygon:

@@ -1,4 +1,4 @@
-"""``artwork``: print a picture on the sheet of a project, in register with its cuts."""
+"""``artwork``: print a picture on the sheet, or the pieces, of a project."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from kirigami_studio.export.paper import page_notes
 from kirigami_studio.foundation.errors import ExportError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.project.document import Document
-from kirigami_studio.project.store import load
-from kirigami_studio.studio.making import CutRequest, printed_job
+from kirigami_studio.project.store import load_all, save
+from kirigami_studio.studio.making import CutRequest, printed_parts
 
 #: Below this resolution (dpi) a print looks coarse at arm's length.
 COARSE_DPI = 150.0
@@ -27,19 +27,25 @@ BARE_SHARE = 0.005
 
 
 def artwork(arguments: argparse.Namespace) -> int:
-    """Write the printed sheet of a project's chosen design as SVG, PDF, PNG, and as it opens."""
-    document = load(arguments.project)
+    """Write the printed sheet, or pieces, of a project's chosen design, and how it opens."""
+    opened = load_all(arguments.project)
+    document = opened.document
     request = CutRequest.of(document, overridden(document.fabrication, arguments))
     printed = _artwork(arguments, document)
-    job = printed_job(request)
+    if arguments.keep:
+        document = replace(document, artwork=printed)
+        save(document, arguments.project, opened.picture)
+        request = CutRequest.of(document, request.settings)
+    job, beds = printed_parts(request)
     try:
-        work = ArtworkJob(printed, job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm)
-        files = write_artwork(work, arguments.out)
+        works = [ArtworkJob(printed, job, arguments.dpi, arguments.bleed_mm, arguments.margin_mm, bed) for bed in beds]
+        files = list(dict.fromkeys(path for work in works for path in write_artwork(work, arguments.out)))
     except ExportError as error:
         if error.code.startswith("artwork.impossible"):
             raise UsageError(error.code, **error.fields) from error
         raise
-    warnings = _warnings(work)
+    work = works[0]
+    warnings = list(dict.fromkeys(warning for work in works for warning in _warnings(work)))
     if arguments.json:
         print_json(
             {
@@ -56,6 +62,8 @@ def artwork(arguments: argparse.Namespace) -> int:
                 "picture_dpi": work.picture_dpi,
                 "covered": work.covered,
                 "copies": len(work.places),
+                **({} if work.bed is None else {"beds": [_bed_json(one) for one in works]}),
+                "lines": sum(len(laid.picture.lines) for laid in printed.laid),
                 "warnings": warnings,
             }
         )
@@ -76,6 +84,17 @@ def artwork(arguments: argparse.Namespace) -> int:
     for warning in warnings:
         say("  " + tr("note: {text}", text=warning))
     return 0
+
+
+def _bed_json(work: ArtworkJob) -> dict[str, object]:
+    """Names and sizes of the print of a bed."""
+    return {
+        "files": [f"{work.stem}{end}" for end in (".svg", ".pdf", ".png")],
+        "frame_mm": work.frame_mm,
+        "page_mm": work.page_mm,
+        "pages": 1 if work.tiling is None else len(work.tiling.tiles),
+        "pixels": work.page.pixels,
+    }
 
 
 def _artwork(arguments: argparse.Namespace, document: Document) -> Artwork:
@@ -124,7 +143,8 @@ def _picture(path: str) -> ArtPicture:
 
 
 def _warnings(work: ArtworkJob) -> list[str]:
-    notes = (*work.job.required_plan.copies.notes, *page_notes(work.page_mm, work.job.paper))
+    copies = work.job.required_plan.copies.notes if work.bed is None else ()
+    notes = (*copies, *page_notes(work.page_mm, work.job.paper))
     found = [note.text for note in notes]
     if work.picture_dpi < COARSE_DPI:
         found.append(

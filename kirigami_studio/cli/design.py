@@ -5,20 +5,21 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from kirigami_studio.cli.console import ProgressLine, plain, print_json, say
-from kirigami_studio.cli.fabrication import material_settings, say_verdict
-from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_targets, warn
+from kirigami_studio.cli.fabrication import material_settings, parts_json, say_parts, say_verdict
+from kirigami_studio.cli.inputs import Named, are_many_targets, for_each, part_choice, read_pieces, read_targets, warn
 from kirigami_studio.cli.option_types import check_name, parse_grid_or_auto, setting_values
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.second_target import SecondTarget
-from kirigami_studio.export.picture import write_png
-from kirigami_studio.export.svg import write_layout_svg
+from kirigami_studio.export.bed_files import KINDS as BED_KINDS
+from kirigami_studio.export.picture import write_parts_png, write_png
+from kirigami_studio.export.svg import write_layout_svg, write_parts_svg
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction
@@ -26,6 +27,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import Cancelled, ExportError, FabricationError, KirigamiError, UsageError
 from kirigami_studio.foundation.files import check_folder, write_atomically
 from kirigami_studio.foundation.processes import Workers, ordered_results_of
+from kirigami_studio.foundation.steps import never
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import lost_to_chords, start_error, start_match
@@ -41,8 +43,11 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.candidate_edits import set_label
+from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import run_labels
+from kirigami_studio.project.sheet_size import sized
 from kirigami_studio.project.store import save
+from kirigami_studio.project.target_parts import parts_as_cut, scale_of, with_part, with_parts
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
@@ -57,6 +62,7 @@ from kirigami_studio.studio.designing import (
     completed,
     document_of,
     first_of_families,
+    limit_of_run,
     request_for,
     run_design,
     why_covered,
@@ -64,10 +70,12 @@ from kirigami_studio.studio.designing import (
 )
 from kirigami_studio.studio.making import (
     CutRequest,
+    ExportedFiles,
     Output,
     Planned,
     closed,
     export_job,
+    has_pieces,
     judged,
     judged_pieces,
     picture_job,
@@ -76,7 +84,18 @@ from kirigami_studio.studio.making import (
     written,
     written_pieces,
 )
+from kirigami_studio.studio.part_sheets import exporting_parts, folder_name, part_names, placed_layouts, worst_of
+from kirigami_studio.studio.targets import PieceRead
 from kirigami_studio.studio.verdict import RANK, Verdict, refused
+
+#: Files of a design, by their roles.
+FILES = {
+    "project": "design.kiri",
+    "cut": "cut.dxf",
+    "layout": "layout.svg",
+    "preview": "preview.png",
+    "candidates": "candidates.json",
+}
 
 
 def design(arguments: argparse.Namespace) -> int:
@@ -97,10 +116,14 @@ def design(arguments: argparse.Namespace) -> int:
         second=second_target(arguments),
     )
 
-    def job_for(target: Outline) -> DesignJob:
+    def job_for(target: Outline, cut: FabricationSettings = fabrication) -> DesignJob:
         least, more = arguments.least_panel_mm, {"trim": arguments.trim, "budget_seconds": arguments.budget_seconds}
-        request = request_for(target, wanted, fabrication, least_panel_mm=least, **more)
-        return DesignJob(request, fabrication, least, arguments.out is not None, arguments.name or "")
+        request = request_for(target, wanted, cut, least_panel_mm=least, **more)
+        return DesignJob(request, cut, least, arguments.out is not None, arguments.name or "")
+
+    def job_of_part(part: Document) -> DesignJob:
+        assert part.target is not None  # parts have one
+        return job_for(part.target, part.fabrication)
 
     def folder_for(name: str) -> Path:
         return Path(arguments.out) / _folder_name(name, used) if batch else Path(arguments.out)
@@ -130,7 +153,26 @@ def design(arguments: argparse.Namespace) -> int:
     def one_from_cluster(name: str, design: DesignOutcome) -> None:
         tell(name, design, design.save(folder_for(name)) if design.files else {})
 
-    inputs = read_targets(arguments.targets, arguments.threshold, part_choice(arguments), arguments.fill_holes)
+    def every_part(name: str, pieces: tuple[PieceRead, ...]) -> None:
+        """Design every piece of a target; one of a single piece as usual."""
+        if len(pieces) == 1:
+            one(name, pieces[0].outline)
+            return
+        whole = with_parts(Document(settings=wanted, fabrication=fabrication), [(p.outline, p.place) for p in pieces])
+        designs = [designed(job_of_part(part), line) for part in parts_as_cut(whole)]
+        found = parts_of(whole, designs, folder_for(name) if arguments.out else None)
+        if batch or arguments.json:
+            print_json(({"source": name} if batch else {}) | found.to_json([warn(name, p.outline) for p in pieces]))
+        else:
+            found.say()
+
+    choice = part_choice(arguments)
+    if choice is not None and choice.is_each:
+        if arguments.scheduler:
+            raise UsageError("parts.each_on_cluster")
+        pieces = read_pieces(arguments.targets, arguments.threshold, choice, arguments.fill_holes)
+        return for_each(pieces, batch, every_part, as_json=arguments.json)
+    inputs = read_targets(arguments.targets, arguments.threshold, choice, arguments.fill_holes)
     if arguments.scheduler:
         return for_each(
             _from_cluster(inputs, job_for, Workers(scheduler=arguments.scheduler)),
@@ -178,7 +220,7 @@ def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> De
     run = run_design(job.request, job.fabrication, least_panel_mm=job.least_panel_mm, pool=pool)
     result = completed(run, lambda progress: line.show(progress.message))
     line.clear()
-    document = document_of(result, job.fabrication)
+    document = sized(document_of(result, job.fabrication))
     untrimmed = why_untrimmed(result)
     notes: tuple[Note, ...] = () if untrimmed is None else (untrimmed,)
     if job.files:
@@ -197,6 +239,100 @@ def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> De
     request = replace(request, as_cut=closed(request, made))
     result = replace(result, as_cut={**result.as_cut, request.candidate: request.as_cut})
     return DesignOutcome(result, request, judged(request, made, request.as_cut), notes=notes)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PartsOutcome:
+    """The designs of all parts of a target."""
+
+    document: Document  #: their project
+    designs: tuple[DesignOutcome, ...]
+    files: Mapping[str, str]  #: by role
+    written: ExportedFiles | None  #: what was found in the cut files
+
+    @property
+    def verdict(self) -> Verdict:
+        """That on the part that does worst."""
+        if self.written is not None and self.written.verdict is not None:
+            return self.written.verdict
+        return worst_of([design.verdict for design in self.designs])
+
+    def to_json(self, warnings: Sequence[Sequence[str]]) -> dict[str, object]:
+        """The JSON answer; ``warnings`` are those of reading each part."""
+        parts = []
+        for name, design, said in zip(part_names(self.document), self.designs, warnings, strict=True):
+            construction = construction_for(design.request.settings)
+            answer = {"name": name} | summary(design.result, construction)
+            answer |= {"warnings": [*said, *(note.text for note in design.notes)], "verdict": design.verdict.to_json()}
+            answer |= {"ok": design.verdict.ok, "width_mm": design.request.settings.width_mm}
+            parts.append(answer | jam_json(design.verdict.as_cut))
+        cut = {} if self.written is None else parts_json(self.written) | {"parts": parts}
+        return cut | {
+            "parts": parts,
+            "mm_per_unit": scale_of(self.document),
+            "files": dict(self.files),
+            "ok": self.verdict.ok,
+            "verdict": self.verdict.to_json(),
+        }
+
+    def say(self) -> None:
+        """Say the same in sentences."""
+        for design in self.designs:
+            _say_result(design.result.request.target, design.result, {}, design.verdict)
+            for note in design.notes:
+                say("  " + tr("note: {text}", text=note.text))
+        if self.written is not None:
+            say_parts(self.written)
+        for path in self.files.values():
+            say(f"  {path}")
+
+
+def parts_of(whole: Document, designs: Sequence[DesignOutcome], folder: Path | None) -> PartsOutcome:
+    """One project of the designs of all parts, with its files in a folder if there is one.
+
+    Raises
+    ------
+    FabricationError
+        A part cannot be cut; the project is there.
+    """
+    for number, design in enumerate(designs):
+        document = design.request.document
+        assert document is not None  # a design that was just made has a project
+        whole = with_part(whole, number, replace(document, place=whole.parts[number].place))
+    found = PartsOutcome(whole, tuple(designs), {}, None)
+    if folder is None:
+        return found
+    paths = {role: folder / name for role, name in FILES.items()}
+    save(whole, paths["project"])
+    listing = {
+        "parts": [
+            {"name": name, "candidates": candidates_json(design.result, construction_for(design.request.settings))}
+            for name, design in zip(part_names(whole), designs, strict=True)
+        ]
+    }
+    write_atomically(paths["candidates"], (json.dumps(plain(listing)) + "\n").encode())
+    layouts = placed_layouts(whole)
+    write_parts_svg(layouts, paths["layout"])
+    write_parts_png(layouts, paths["preview"])
+    known = {one.request.candidate: one.request.as_cut for one in designs if one.request.as_cut is not None}
+    machine = named_machine(whole.fabrication)
+    if has_pieces(whole.fabrication):
+        paths["cut"] = folder / ("print" if is_printed(whole.fabrication) else "cut")
+        output = Output(paths["cut"], "cut")
+    else:
+        output = Output(paths["cut"])
+    if machine is not None and machine.file in BED_KINDS and machine.file != output.path.suffix and output.name is None:
+        paths["machine_cut"] = paths["cut"].with_suffix(machine.file)
+    try:
+        outputs = [output, *(Output(paths[role]) for role in ("machine_cut",) if role in paths)]
+        exported = [[*exporting_parts(whole, one, True, never, known)][-1] for one in outputs]
+    except (ExportError, UsageError, FabricationError) as error:
+        raise FabricationError("design.not_cut", project=paths["project"], reason=str(error)) from error
+    written_now = [one for one in exported if isinstance(one, ExportedFiles)]
+    paths["cut"] = written_now[0].path
+    worst = max(written_now, key=lambda one: 0 if one.verdict is None else RANK[one.verdict.level])
+    beds = {f"cut_{number}": path for number, path in enumerate(worst.files[1:], start=2) if output.name is None}
+    return replace(found, files={role: str(path) for role, path in (paths | beds).items()}, written=worst)
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,6 +461,9 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
     why = why_covered(result.candidates, result.request.target, result.request.start)
     if why is not None:
         answer["why_covered"] = {"code": why.code, "text": why.text}
+    limit = limit_of_run(result)
+    if limit is not None and limit != why:
+        answer["closed_limit"] = {"code": limit.code, "text": limit.text}
     if result.request.budget_seconds is not None:
         answer["budget_ended"] = result.budget_ended
     return answer
@@ -396,13 +535,7 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
         No design can be cut; everything but the cut file is there.
     """
     request, document = design.request, design.request.document
-    paths = {
-        "project": folder / "design.kiri",
-        "cut": folder / "cut.dxf",
-        "layout": folder / "layout.svg",
-        "preview": folder / "preview.png",
-        "candidates": folder / "candidates.json",
-    }
+    paths = {role: folder / name for role, name in FILES.items()}
     assert document is not None  # a design that was just made has a project
     save(document, paths["project"])
     listing = {"candidates": candidates_json(design.result, construction_for(request.settings))}
@@ -449,13 +582,8 @@ def _write_pictures(request: CutRequest, made: Planned | None, paths: Mapping[st
 
 def _folder_name(name: str, used: set[str]) -> str:
     """A file-system name for a batch input, made unique."""
-    stem = Path(name.split("[")[0]).stem + name[len(name.split("[")[0]) :]
-    clean = "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in stem).strip("_") or "target"
-    unique, number = clean, 2
-    while unique in used:
-        unique, number = f"{clean}_{number}", number + 1
-    used.add(unique)
-    return unique
+    start = name.split("[")[0]
+    return folder_name(Path(start).stem + name[len(start) :], used)
 
 
 def _say_result(target: Outline, result: Result, files: dict[str, str], verdict: Verdict) -> None:
@@ -509,9 +637,9 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
         )
     (reason, *_) = result.ranking.reasons(result.candidates)
     say(f"{target.name}: {reason.text}")
-    why = why_covered(result.candidates, target, result.request.start)
-    if why is not None:
-        say(f"{target.name}: {why.text}")
+    limit = limit_of_run(result)
+    if limit is not None:
+        say(f"{target.name}: {limit.text}")
     if trim is not None:
         say(
             tr(

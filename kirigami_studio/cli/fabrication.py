@@ -52,6 +52,7 @@ from kirigami_studio.studio.making import (
     written,
     written_pieces,
 )
+from kirigami_studio.studio.part_sheets import exporting_parts, part_of, part_requests, with_settings, writes_parts
 from kirigami_studio.studio.verdict import Verdict, refused
 
 if TYPE_CHECKING:
@@ -79,6 +80,8 @@ def export(arguments: argparse.Namespace) -> int:
     """Write cut or picture files of a project, verify the cut files, and report on them."""
     _check_picture(arguments)
     document = load(arguments.project)
+    if arguments.part is not None:
+        document = part_of(document, arguments.part)
     chosen_candidate(document)
     if arguments.name is not None and document.chosen is not None and document.label is not None:
         check_name(arguments.name, document.label.code)
@@ -86,6 +89,8 @@ def export(arguments: argparse.Namespace) -> int:
     settings = overridden(document.fabrication, arguments)
     request = CutRequest.of(document, settings)
     output = Output(Path(arguments.out), "cut" if arguments.all else None, _wants_record(arguments))
+    if writes_parts(document, output):
+        return _export_parts(with_settings(document, settings), output, as_json=arguments.json)
     angle = None if arguments.at_deg is None else math.radians(arguments.at_deg)
     if not arguments.all and not writes_layers(request, output):
         find_writer(arguments.out)
@@ -190,6 +195,83 @@ def export(arguments: argparse.Namespace) -> int:
         if warning not in said:
             say("  " + tr("note: {text}", text=warning))
     return 0 if found.ok else 1
+
+
+def _export_parts(document: Document, output: Output, *, as_json: bool) -> int:
+    """Write the sheets of all parts of a project, and report on each."""
+    for request in part_requests(document):
+        check_connectors(request.candidate, request.settings.options)
+    *_, found = exporting_parts(document, output, True, never)
+    assert isinstance(found, ExportedFiles)  # all pages of a PDF are wanted
+    if as_json:
+        print_json(parts_json(found) | {"files": [str(path) for path in found.files]})
+    else:
+        say_parts(found)
+        for path in found.files:
+            say(f"  {path}")
+    return 0 if found.ok else 1
+
+
+def parts_json(found: ExportedFiles) -> dict[str, object]:
+    """The JSON answer on the files of all parts, and on each."""
+    verdict, work, parts = found.verdict, found.work, [_part_json(part) for part in found.parts]
+    assert verdict is not None  # sheets are judged
+    plans = [(part.planned.plan, part.planned.report) for part in found.parts if part.planned is not None]
+    warnings = [note.text for plan, report in plans for note in (*plan.notes, *report.problems)]
+    return {
+        "parts": parts,
+        **(
+            {}
+            if work is None
+            else {
+                "cut_length_mm": work.cut_length_mm,
+                "travel_mm": work.travel_mm,
+                "seconds_estimate": work.times.total,
+            }
+        ),
+        "pieces": sum(report.pieces for _, report in plans)
+        + sum(len(part.pieces.made.assembly.pieces) for part in found.parts if part.pieces is not None),
+        **({"min_connector_mm": min(plan.min_connector_mm for plan, _ in plans)} if plans else {}),
+        "warnings": list(dict.fromkeys(warnings)),
+        "verified": [_summary(one) | {"part": one.sheet} for one in found.verifications],
+        "ok": verdict.ok,
+        "verdict": verdict.to_json(),
+    }
+
+
+def _part_json(found: ExportedFiles) -> dict[str, object]:
+    verdict, made = found.verdict, found.planned
+    assert verdict is not None  # sheets are judged
+    sheet = {} if made is None else {"size_mm": made.plan.size_mm, "min_connector_mm": made.plan.min_connector_mm}
+    return {"name": found.part, **sheet, **jam_json(verdict.as_cut), "ok": verdict.ok, "verdict": verdict.to_json()}
+
+
+def say_parts(found: ExportedFiles) -> None:
+    """Say of every part what was found in its files, and what is to be expected of it."""
+    for part in found.parts:
+        if part.planned is not None:
+            width, height = part.planned.plan.size_mm
+            say(tr("{part}: sheet of {width:.2f} x {height:.2f} mm", part=part.part, width=width, height=height))
+        else:
+            say(f"{part.part}:")
+        for one in part.verifications:
+            path = one.path
+            right = tr("{path}: verified by two readers", path=path)
+            say("  " + (right if one.ok else tr("{path}: NOT as planned", path=path)))
+            for finding in one.findings:
+                if not finding.ok:
+                    say("  " + tr("fault: {text}", text=finding.text))
+        if part.verdict is not None:
+            say_verdict(part.verdict)
+    if (work := found.work) is not None:
+        say(
+            tr(
+                "all parts: cut {cut:.1f} mm, travel {travel:.1f} mm, about {seconds:.0f} s",
+                cut=work.cut_length_mm,
+                travel=work.travel_mm,
+                seconds=work.times.total,
+            )
+        )
 
 
 def _wants_record(arguments: argparse.Namespace) -> bool:
@@ -362,6 +444,11 @@ def _checked_json(found: Checked) -> dict[str, object]:
         "record": None if record is None else record.to_json(),
         "verdict_at_export": None if found.said is None else found.said.value,
     }
+    if report.sheets:
+        records = [None if sheet.record is None else sheet.record.to_json() for sheet in report.sheets]
+        answer["sheets"] = [
+            {"record": record, "pieces": sheet.pieces} for record, sheet in zip(records, report.sheets, strict=True)
+        ]
     if found.verification is not None:
         answer["void_miss_um"] = found.verification.void_miss_um
     if found.verdict is not None:

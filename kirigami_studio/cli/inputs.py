@@ -10,7 +10,7 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -32,7 +32,7 @@ from kirigami_studio.outlines.silhouettes import names
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.project.store import CUT_FILES, load
 from kirigami_studio.project.store import SUFFIX as PROJECT
-from kirigami_studio.studio.targets import PartChoice, inside_of, mask_outline, read_drawing
+from kirigami_studio.studio.targets import PartChoice, PieceRead, inside_of, mask_outline, read_drawing
 
 SHEET_SUFFIXES = (*SUFFIXES, ".npz", PROJECT)
 #: What masks may be, as Pillow calls them, how many pixels, and how many megabytes: 64 bits a pixel, uncompressed.
@@ -133,6 +133,28 @@ def read_targets(
     """
     for named in _targets(sources, threshold, choice):
         yield Named(named.name, partial(_with_holes, named.read, fill_holes))
+
+
+def read_pieces(
+    sources: Sequence[str], threshold: float | None, choice: PartChoice, fill_holes: bool | None = None
+) -> Iterator[Named[tuple[PieceRead, ...]]]:
+    """Yield the pieces of every drawing that the sources name, in order."""
+    if threshold is not None and not 0.0 < threshold < 1.0:
+        raise UsageError("option.threshold", value=threshold)
+    for source in sources:
+        path = Path(source)
+        if source not in names() and _is_folder(source):
+            for file in target_files(path):
+                yield Named(file.stem, partial(_pieces, file, threshold, choice, fill_holes))
+        elif has_parts(path):
+            yield Named(source, partial(_pieces, path, threshold, choice, fill_holes))
+        else:
+            raise UsageError("parts.not_a_drawing", source=source, kinds=", ".join(PART_READERS))
+
+
+def _pieces(path: Path, threshold: float | None, choice: PartChoice, filled: bool | None) -> tuple[PieceRead, ...]:
+    found = choice.pieces(path, threshold)
+    return tuple(replace(piece, outline=piece.outline.with_holes(filled)) for piece in found)
 
 
 def _with_holes(read: Callable[[], Outline], filled: bool | None) -> Outline:

@@ -100,7 +100,8 @@ PARTS = (
            help="a place that does not belong to it, such as its shadow, or several"),
     option("--join", choices=[join.value for join in Join], default=None,
            help="how parts become one outline: union of what touches, bridges between nearest places, convex hull, or "
-                "a tight hull (default union; all parts with the others)"),
+                "a tight hull; for design also each: every piece is a sheet of its own, all to one scale (default "
+                "union; all parts with the others)"),
     option("--fill-holes", action=argparse.BooleanOptionalAction, default=None,
            help="fill the holes of the target, or keep all of them (default: holes are kept, but for those around "
                 "which only a line would stay)"),
@@ -162,6 +163,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio design heart --start circle --out out/disk-to-heart",
         "kirigami-studio design star --start circle --also hexagon --at-deg 60 --weight 0.5 --json",
         "kirigami-studio design logo.svg --parts badge,star --join bridge --bridge 2 --out out/logo",
+        "kirigami-studio design word.svg --parts all --join each --out out/word",
         "kirigami-studio design masks.npz --k 1 --json",
         "kirigami-studio design drawings --scheduler tcp://10.0.0.5:8786 --out out/drawings",
     )),
@@ -203,9 +205,12 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("export", "write a project as a cut file or picture", "fabrication:export", (
         option("project", help="a .kiri project"),
         option("--out", required=True,
-               help="file to write (.dxf .svg .pdf .lbrn2 .png .gif .html .stl .3mf .obj .fold .xml .csv); with "
+               help="file to write (.dxf .svg .pdf .lbrn2 .png .gif .html .stl .3mf .obj .fold .xml .inp .csv); with "
                     "--all, a folder"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
+        option("--part", type=name, default=None, metavar="NAME",
+               help="of a target of several parts only this one, by its name or number from 1 (default: all of them in "
+                    "one cut file for each bed; pictures show the chosen one)"),
         option("--as-cut", action="store_true",
                help="pictures (.png .gif, and those of --all) show the sheet on the connectors of its planned cuts, as "
                     "far as it comes (default: the ideal motion)"),
@@ -279,11 +284,15 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), ("kirigami-studio animate heart.kiri --out heart.gif",
         "kirigami-studio animate heart.kiri --out heart-as-cut.gif --as-cut --material card-co2")),
-    SubCommand("artwork", "print a picture on the sheet, in register with its cuts", "artwork:artwork", (
+    SubCommand("artwork", "print a picture on the sheet or its pieces, in register with the cuts", "artwork:artwork", (
         option("project", help="a .kiri project"),
         option("--picture", default=None, help="PNG, JPG, BMP, TIFF, WebP or SVG (default: the project's artwork)"),
         option("--out", required=True,
-               help="folder for artwork.svg, artwork.pdf, artwork.png (the flat sheet) and artwork_opened.png"),
+               help="folder for artwork.svg, artwork.pdf, artwork.png (the flat sheet; of pieces one set for each bed, "
+                    "artwork-layer-1.svg and so on) and artwork_opened.png"),
+        option("--keep", action="store_true",
+               help="keep the picture in the project: cut files of pieces then have the lines of an SVG on a layer "
+                    "ARTWORK"),
         option("--on", choices=("target", "flat"), default=None,
                help="where the picture is seen whole: on the opened sheet or on the flat one (default: the project's, "
                     "or target)"),

@@ -6,15 +6,16 @@ rigid motion), so that the sides of untouched panels stay exactly where the cuts
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
 import shapely
-from shapely.geometry import LineString, MultiPolygon, Polygon
+from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
@@ -43,6 +44,13 @@ class PanelTable:
     corners: IntArray  #: (E, 4); nodes: top, left, bottom, right
     hinged: BoolArray  #: (E, 4); corners that are shared with a neighbour
     even: BoolArray  #: (E,); panels with I + J even: they turn by -a when the sheet opens, the others by +a
+    #: (E, 4); nodes that may rest on the side after each corner, from beyond the slit there; -1 at the sheet's edge
+    guests: IntArray
+
+    def at(self, places: IntArray, hinged: BoolArray) -> PanelTable:
+        """Panels of some places, with other shared corners (E, 4)."""
+        other = replace(self, hinged=hinged)
+        return PanelTable(*(getattr(other, one.name)[places] for one in fields(self)))
 
 
 @cache
@@ -51,7 +59,7 @@ def all_panels(rows: int, columns: int) -> PanelTable:
     line, place = (axis.ravel() for axis in np.indices((rows + 1, columns + 1)))
     hinged = np.stack([line > 0, place > 0, line < rows, place < columns], axis=1)
     corners = topology(rows, columns).panel_nodes.reshape(-1, 4)
-    return PanelTable(np.arange(line.size), corners, hinged, (line + place) % 2 == 0)
+    return PanelTable(np.arange(line.size), corners, hinged, (line + place) % 2 == 0, _guests(rows, columns))
 
 
 @cache
@@ -59,7 +67,28 @@ def edge_panels(rows: int, columns: int) -> PanelTable:
     """The (cached) panels along the edge of an m x n grid."""
     every = all_panels(rows, columns)
     index = np.flatnonzero(~every.hinged.all(axis=1))
-    return PanelTable(index, every.corners[index], every.hinged[index], every.even[index])
+    return every.at(index, every.hinged)
+
+
+def _guests(rows: int, columns: int) -> IntArray:
+    """Nodes (P, 4) across the slits along the sides of all panels."""
+    tables = topology(rows, columns)
+    nodes, even = tables.void_nodes.reshape(-1, 4), tables.even_void.ravel()
+    # From its ends the slit of a void goes along one of the two other nodes, with the other one beyond.
+    nodes = np.where(even[:, None], np.roll(nodes, 1, axis=1), nodes)
+    sides = np.concatenate([nodes[:, [0, 1]], nodes[:, [0, 3]], nodes[:, [2, 1]], nodes[:, [2, 3]]])
+    beyond = np.concatenate([nodes[:, 3], nodes[:, 1], nodes[:, 3], nodes[:, 1]])
+    corners = tables.panel_nodes.reshape(-1, 4)
+    keys = [np.sort(pairs, axis=-1) @ (tables.node_count, 1) for pairs in (sides, _sides(corners))]
+    order = np.argsort(keys[0])
+    place = order[np.searchsorted(keys[0][order], keys[1]).clip(max=len(order) - 1)]
+    found: IntArray = np.where(keys[0][place] == keys[1], beyond[place], -1)
+    return found
+
+
+def _sides(corners: IntArray) -> IntArray:
+    """Both nodes of every side of panels: (E, 4, 2)."""
+    return np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,6 +129,35 @@ def kept_part(
     return None if wanted is None else _in_one_piece(panel, wanted, around, keep)
 
 
+def moved_off(
+    panel: Polygon, part: Polygon, corners: FloatArray, hinged: BoolArray, guests: FloatArray, keep: float
+) -> list[Polygon]:
+    """Versions of a part whose edge runs into no side of its panel near the connectors that rest there from beyond.
+
+    The edge of a part is a rim; a connector beyond it needs ``keep`` of one side alone.  The first version has the
+    material around them, the second one is without it, if it is as well in one piece with its hinges.
+
+    Parameters
+    ----------
+    guests : (G, 2) float, unit cells
+        Those connectors.
+    """
+    side = shapely.LineString(corners[[0, 1, 2, 3, 0]])
+    discs = shapely.buffer(shapely.points(guests), keep)
+    near = shapely.intersection(side, shapely.buffer(shapely.points(guests), keep, quad_segs=2))
+    along = shapely.length(shapely.intersection(near, shapely.buffer(part, GRID, join_style="mitre")))
+    halved = (along > SLIVER * keep) & (along < shapely.length(near) - SLIVER * keep)
+    if not halved.any():
+        return []
+    around = _shared(shapely.union_all(discs[halved]), panel)
+    filled = _solid(_united(part, around))
+    hinges, less = _around_hinges(panel, corners, hinged, keep), _less(part, around)
+    holding = _holding(less, hinges, keep) if less.area > 0.0 else np.zeros(0)
+    if len(holding) != 1 or not shapely.covers(shapely.buffer(less, GRID), hinges.all):
+        return [filled]
+    return [filled, _solid(less)]
+
+
 def measured(panels: GeometryArray, common: GeometryArray, shapes: GeometryArray) -> KeptPanels:
     """What stays of panels (E,), with the areas that are cut off; ``common`` (E,) are the target's parts of them."""
     area, inside = shapely.area(panels), shapely.area(common)
@@ -119,7 +177,9 @@ def polygons(corners: FloatArray, holes: Sequence[FloatArray] = ()) -> GeometryA
     return snapped
 
 
-def with_pockets(kept: KeptPanels, corners: FloatArray, targets: GeometryArray, whole: BaseGeometry) -> KeptPanels:
+def with_pockets(
+    kept: KeptPanels, corners: FloatArray, targets: GeometryArray, whole: BaseGeometry, most: float = math.inf
+) -> KeptPanels:
     """Give back what no cut along one outline can take: places that the kept parts enclose in the compact sheet.
 
     Parameters
@@ -128,10 +188,12 @@ def with_pockets(kept: KeptPanels, corners: FloatArray, targets: GeometryArray, 
         As for :func:`kept_panels`.
     whole : geometry
         The rest of the sheet.
+    most : float, unit cells squared
+        Larger places stay open.
     """
     panels = polygons(corners)
     present = [shape if shape is not None else panel for shape, panel in zip(kept.shapes, panels, strict=True)]
-    pockets = enclosed([*present, whole])
+    pockets = [pocket for pocket in enclosed([*present, whole]) if pocket.area < most]
     if not pockets:
         return kept
     filling = _united(*pockets)
@@ -181,11 +243,15 @@ def _areas(shape: BaseGeometry) -> BaseGeometry:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Around:
-    """Material around the hinges of one panel: one part for each, and all of it; ``points`` (H, 2) are the hinges."""
+    """Material around the hinges of one panel: one part for each, and all of it; ``points`` (H, 2) are the hinges.
+
+    ``cores`` (H,) are what is left of the parts when they shrink as necks do.
+    """
 
     points: FloatArray
     parts: GeometryArray
     all: BaseGeometry
+    cores: GeometryArray
 
 
 def _around_hinges(panel: Polygon, corners: FloatArray, hinged: BoolArray, keep: float) -> _Around:
@@ -196,7 +262,7 @@ def _around_hinges(panel: Polygon, corners: FloatArray, hinged: BoolArray, keep:
     points = corners[hinged]
     discs = shapely.buffer(shapely.points(points), reach[hinged])
     parts = shared_parts(discs, np.full(len(discs), panel))
-    return _Around(points, parts, _united(*parts))
+    return _Around(points, parts, _united(*parts), _core(parts, keep))
 
 
 def _without_slivers(panel: Polygon, wanted: BaseGeometry) -> BaseGeometry | None:
@@ -205,16 +271,16 @@ def _without_slivers(panel: Polygon, wanted: BaseGeometry) -> BaseGeometry | Non
     thin = shapely.is_empty(shapely.buffer(rests, -0.5 * SLIVER))
     if np.all(thin):
         return None
-    return _united(wanted, *rests[thin])
+    return _united(wanted, *rests[thin]) if thin.any() else wanted
 
 
 def _in_one_piece(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> Polygon | None:
     """The piece with all hinges on it, strips added between them if need be; None where the panel is too thin."""
-    if np.any(shapely.is_empty(_core(around.parts, keep))):
+    if np.any(shapely.is_empty(around.cores)):
         return None
     holding = _holding(wanted, around, keep)
     for strip in _strips(panel, wanted, around, keep) if len(holding) > 1 else ():
-        wanted = _united(wanted, strip)
+        wanted = _united(wanted, _shared(strip, panel))
         holding = _holding(wanted, around, keep)
         if len(holding) == 1:
             break
@@ -222,24 +288,25 @@ def _in_one_piece(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: f
     return _solid(_united(_shared(wanted, grown), around.all))
 
 
-def _strips(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> list[BaseGeometry]:
-    """Straight connections between hinges, those first that add least."""
-    pairs = combinations(range(len(around.points)), 2)
-    strips = [_shared(LineString(around.points[list(pair)]).buffer(keep), panel) for pair in pairs]
-    return sorted(strips, key=lambda strip: float(_less(strip, wanted).area))
+def _strips(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> GeometryArray:
+    """Straight connections between hinges, those first that add least; they may reach beyond the panel."""
+    pairs = list(combinations(range(len(around.points)), 2))
+    strips: GeometryArray = np.asarray(shapely.buffer(shapely.linestrings(around.points[pairs]), keep), dtype=object)
+    within = shapely.intersection(strips, panel)
+    added = shapely.area(within) - shapely.area(shapely.intersection(within, wanted))
+    return strips[np.argsort(added, kind="stable")]
 
 
-def _core(shapes: GeometryArray | BaseGeometry, keep: float) -> GeometryArray | BaseGeometry:
+def _core(shapes: GeometryArray, keep: float) -> GeometryArray:
     """What is left when necks and slivers have shrunk to nothing."""
-    core: GeometryArray | BaseGeometry = shapely.buffer(shapes, -NECK * keep, join_style="mitre", mitre_limit=MITRE)
+    core: GeometryArray = shapely.buffer(shapes, -NECK * keep, join_style="mitre", mitre_limit=MITRE)
     return core
 
 
 def _holding(wanted: BaseGeometry, around: _Around, keep: float) -> GeometryArray:
     """Pieces of the core of ``wanted`` that hold hinges."""
-    pieces = shapely.get_parts(_core(wanted, keep))
-    hinges = shapely.union_all(_core(around.parts, keep))
-    held: GeometryArray = pieces[shapely.intersects(pieces, hinges)]
+    pieces = shapely.get_parts(_core(np.array([wanted], dtype=object), keep))
+    held: GeometryArray = pieces[shapely.intersects(pieces[:, None], around.cores).any(axis=1)]
     return held
 
 

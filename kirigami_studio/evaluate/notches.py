@@ -14,6 +14,7 @@ left out or taken back as long as the trimmed silhouette gains from it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.evaluate.kept_panels import (
+    GRID,
     SLIVER,
     GeometryArray,
     KeptPanels,
@@ -30,6 +32,7 @@ from kirigami_studio.evaluate.kept_panels import (
     kept_part,
     largest_part,
     measured,
+    moved_off,
     polygons,
     shared_parts,
     with_pockets,
@@ -141,22 +144,24 @@ class _NotchCut:
         self._panels = polygons(corners)
         self._common = shared_parts(self._panels, targets)
         self._area, self._inside = shapely.area(self._panels), shapely.area(self._common)
+        # Panels (P,) that have stayed whole so far, and their area.
+        self._middle, self._united = np.ones(len(corners), dtype=np.bool_), NOTHING
         self._known: dict[tuple[int, bytes], tuple[float, BaseGeometry | None]] = {}
 
     def first(self) -> BoolArray:
         """The largest set of voids mostly on the target, without holes unless they may be open."""
-        mostly = _largest(self._shares() >= MOSTLY)
+        mostly = largest_set(self._shares() >= MOSTLY)
         if self._open_inside:
             return mostly
-        outside, _ = _labelled(np.pad(~mostly, 1, constant_values=True), EIGHT_WAYS)
+        outside, _ = labelled(np.pad(~mostly, 1, constant_values=True), EIGHT_WAYS)
         whole: BoolArray = outside[1:-1, 1:-1] != outside[0, 0]
         return whole
 
     def _is_one(self, voids: BoolArray) -> bool:
         """Whether voids hang together by hinges, and so does all around them unless it may be open."""
-        if _labelled(voids)[1] != 1:
+        if labelled(voids)[1] != 1:
             return False
-        return self._open_inside or _labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)[1] == 1
+        return self._open_inside or labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)[1] == 1
 
     def _shares(self) -> FloatArray:
         """Part of the panels around each void that lies on the target: (m, n)."""
@@ -181,14 +186,15 @@ class _NotchCut:
 
     def opened(self, voids: BoolArray, images: IntArray | None) -> BoolArray:
         """Leave out more voids as long as that lets a notch out that the parts would enclose."""
-        orbits, best = self._orbits(images), self._draft(voids, _hinges_of(voids))
+        orbits, best = self._orbits(images), self._draft(voids, hinges_of(voids))
         tried: set[int] = set()
         while more := [void for void in self._that_enclose(best) if void not in tried]:
             tried.add(more[0])
             other = best.voids.copy()
             other.flat[orbits[more[0]]] = False
-            if self._is_one(other):
-                draft = self._draft(other, _hinges_of(other))
+            # Enclosed places only take from what the parts are worth.
+            if self._is_one(other) and self._parts_worth(other, hinged := hinges_of(other)) > best.worth + LEAST_GAIN:
+                draft = self._draft(other, hinged)
                 best = draft if draft.worth > best.worth + LEAST_GAIN else best
         return best.voids
 
@@ -202,17 +208,28 @@ class _NotchCut:
         beside = draft.voids & (shapely.distance(slits, shapely.union_all(bars)) < TOUCH)
         return [int(void) for void in np.flatnonzero(beside)]
 
+    def _parts_worth(self, voids: BoolArray, hinged: BoolArray) -> float:
+        """What the parts with these voids and hinges add to the silhouette's worth."""
+        return sum(self._part(k, hinged[k])[0] for k in range(len(hinged))) + float(self._void_gain[voids].sum())
+
     def _draft(self, voids: BoolArray, hinged: BoolArray) -> _NotchDraft:
         """The parts with these voids and hinges before enclosed places are filled."""
         shapes = np.empty(len(self._panels), dtype=object)
         shapes[:] = [self._part(k, hinged[k])[1] for k in range(len(hinged))]
-        worth = sum(self._part(k, hinged[k])[0] for k in range(len(hinged))) + float(self._void_gain[voids].sum())
-        notches = [] if self._open_inside else enclosed(self._present(shapes))
+        worth = self._parts_worth(voids, hinged)
+        notches = [] if self._open_inside else self._enclosed(shapes)
         if notches:
             self._open_ways_out(shapes, hinged, ~voids, notches)
-            notches = [notch for notch in enclosed(self._present(shapes)) if notch.area > WORTH_OPENING]
+            notches = [notch for notch in self._enclosed(shapes) if notch.area > WORTH_OPENING]
         filled = STICKING_OUT * sum(float(notch.area) for notch in notches)
         return _NotchDraft(voids, shapes, notches, worth - filled)
+
+    def _enclosed(self, shapes: GeometryArray) -> list[Polygon]:
+        """Places that the parts of all panels enclose; the many that are whole are united once."""
+        middle = self._middle & np.array([shape is None for shape in shapes])
+        if np.any(middle != self._middle):
+            self._middle, self._united = middle, shapely.union_all(self._panels[middle], grid_size=GRID)
+        return enclosed([self._united, *self._present(shapes)[~self._middle]])
 
     def _orbits(self, images: IntArray | None) -> IntArray:
         """Each void with its images, (m n, G + 1), if the target has the sheet's symmetry; else alone."""
@@ -228,12 +245,20 @@ class _NotchCut:
         beside = [(row + down) * (self._columns + 1) + column + right for down in (0, 1) for right in (0, 1)]
         panels = np.unique(np.concatenate(beside))
         changes = self._void_gain.flat[np.unique(orbit)].sum() * (1.0 if after.flat[orbit[0]] else -1.0)
-        old, new = _hinges_of(before), _hinges_of(after)
+        old, new = hinges_of(before), hinges_of(after)
         changes -= sum(self._part(k, old[k])[0] for k in panels.tolist())
-        most = float(changes + self._inside[panels[new[panels].any(axis=1)]].sum())
-        if most <= LEAST_GAIN:  # no panel is worth more than its part on the target, so no part has to be made
+        # No panel is worth more than its part on the target: where that is too little, no part has to be made.
+        most = float(changes + sum(self._most(k, new[k]) for k in panels.tolist()))
+        if most <= LEAST_GAIN:
             return most
         return float(changes + sum(self._part(k, new[k])[0] for k in panels.tolist()))
+
+    def _most(self, k: int, hinged: BoolArray) -> float:
+        """What a panel with these hinges may add at most."""
+        key = k, hinged.tobytes()
+        if key in self._known:
+            return self._known[key][0]
+        return float(self._inside[k]) if hinged.any() else 0.0
 
     def _part(self, k: int, hinged: BoolArray) -> tuple[float, BaseGeometry | None]:
         """What a panel with these hinges adds to the silhouette's worth, and what stays of it."""
@@ -248,19 +273,35 @@ class _NotchCut:
         shape, area, shared = None, float(self._area[k]), float(self._inside[k])
         if shared < area - SLIVER * SLIVER:
             shape = kept_part(self._panels[k], self._common[k], self._corners[k], hinged, self._keep)
-        if shape is not None:
-            area, shared = float(shape.area), float(shape.intersection(self._common[k]).area)
-        far = 0.0
-        if self._open_inside and shape is not None:
+        return (shared - STICKING_OUT * (area - shared) if shape is None else self._worth(k, shape)), shape
+
+    def _worth(self, k: int, shape: Polygon) -> float:
+        """What a part of a panel adds to the silhouette's worth."""
+        shared, far = float(shape.intersection(self._common[k]).area), 0.0
+        if self._open_inside:
             far = float(shape.difference(shapely.buffer(self._targets[k], self._keep)).area)
-        return shared - STICKING_OUT * (area - shared) - FAR_OFF * far, shape
+        return shared - STICKING_OUT * (float(shape.area) - shared) - FAR_OFF * far
+
+    def _clear_of_guests(self, shapes: GeometryArray, hinged: BoolArray) -> GeometryArray:
+        """The parts of all panels, with room for the connectors that rest on their sides from beyond."""
+        panels, cleared = all_panels(self._rows, self._columns), shapes.copy()
+        place, there = np.zeros((panels.corners.max() + 1, 2)), np.zeros(panels.corners.max() + 2, dtype=np.bool_)
+        place[panels.corners] = self._corners
+        there[panels.corners[hinged]] = True
+        guests = there[panels.guests]  # the last one stands for none
+        for k in np.flatnonzero(guests.any(axis=1)).tolist():
+            if shapes[k] is not None and not shapes[k].is_empty:
+                beside = place[panels.guests[k][guests[k]]]
+                versions = moved_off(self._panels[k], shapes[k], self._corners[k], hinged[k], beside, self._keep)
+                cleared[k] = max(versions, key=lambda part: self._worth(k, part), default=shapes[k])
+        return cleared
 
     def parts(self, voids: BoolArray) -> KeptPanels:
         """What stays of all panels with these voids.
 
         Where both panels of a hinge that was given up reach it all the same, it stays: with its material.
         """
-        hinged = _hinges_of(voids)
+        hinged = hinges_of(voids)
         one, other = _hinge_pairs(self._rows, self._columns)
         there: BoolArray = np.asarray(hinged.any(axis=1))
         reached = self._reached(self._common)
@@ -268,10 +309,11 @@ class _NotchCut:
             back = reached[one] & reached[other] & there[one[0]] & there[other[0]] & ~hinged[one]
             hinged[one] |= back
             hinged[other] |= back
-            shapes = self._draft(voids, hinged).shapes
+            shapes = self._clear_of_guests(self._draft(voids, hinged).shapes, hinged)
             kept = measured(self._panels, self._common, shapes)
-            if not self._open_inside:
-                kept = with_pockets(kept, self._corners, self._targets, NOTHING)
+            # A crumb that is cut out beside a slit is no hole, and leaves no room for the slit's ends.
+            most = self._keep**2 if self._open_inside else math.inf
+            kept = with_pockets(kept, self._corners, self._targets, NOTHING, most)
             reached = self._reached(self._present(kept.shapes))
             if not np.any(reached[one] & reached[other] & ~hinged[one]):
                 break
@@ -308,7 +350,7 @@ class _NotchCut:
         return reached
 
 
-def _hinges_of(voids: BoolArray) -> BoolArray:
+def hinges_of(voids: BoolArray) -> BoolArray:
     """Which corners of every panel are hinges of voids that stay: ((m + 1) (n + 1), 4)."""
     rows, columns = voids.shape
     padded = np.pad(voids, 1)
@@ -327,7 +369,7 @@ def _hinge_pairs(rows: int, columns: int) -> tuple[tuple[IntArray, IntArray], tu
     return (panel, corner), (neighbour, corner + 2)
 
 
-def _labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArray, int]:
+def labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArray, int]:
     """Numbers of the connected sets of voids, and how many there are."""
     # Imported when it is needed: it takes long, and the window starts without it.
     from scipy.ndimage import label
@@ -336,9 +378,9 @@ def _labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntAr
     return np.asarray(numbers, dtype=np.intp), int(count)
 
 
-def _largest(voids: BoolArray) -> BoolArray:
+def largest_set(voids: BoolArray) -> BoolArray:
     """The largest connected set of voids."""
-    numbers, count = _labelled(voids)
+    numbers, count = labelled(voids)
     if count == 0:
         return voids
     largest: BoolArray = numbers == 1 + int(np.argmax(np.bincount(numbers.ravel())[1:]))

@@ -201,6 +201,8 @@ def covered(
     area = shapely.difference(area, off, grid_size=GRID)
     if voids is not None:
         openings = np.asarray(shapely.polygons(voids), dtype=np.object_)
+        if (crossed := ~shapely.is_valid(openings)).any():  # a void may fold over itself beyond its closed state
+            openings[crossed] = shapely.make_valid(openings[crossed], method="structure", keep_collapsed=False)
         beside = shapely.area(shapely.intersection(openings, target)) < 0.5 * shapely.area(openings)
         lost = openings[beside & shapely.intersects(openings, off.buffer(10.0 * GRID))]
         area = shapely.difference(area, shapely.union_all(lost, grid_size=GRID), grid_size=GRID)

@@ -12,6 +12,7 @@ same ratio of areas without a raster.  For two mask images see ``mask_siou``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -29,6 +30,8 @@ from kirigami_studio.outlines.outline import Outline
 PIXELS_OFF, ROUNDING = 1e-3, 1e-4
 #: A silhouette that reaches this many times as far from the middle as the target is not laid upon it.
 FARTHEST = 10.0
+#: Turns at which a silhouette with holes is tried, and how often half a step to either side is.
+TURNS, HALVINGS = 24, 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,18 +53,30 @@ def siou_of_many(shapes: Sequence[FloatArray], target: Outline) -> list[ShapeMat
 
 
 def iou_of_area(area: shapely.Polygon, target: Outline) -> float:
-    """Exact IoU of an area in its best pose, open where that is mostly a hole of the target."""
+    """Exact IoU of an area in its best pose, open where that is mostly a hole of the target.
+
+    Outer rings alone do not tell how a face on a disc is turned: of all turns the one counts at which holes match too.
+    """
     ring = shapely.get_coordinates(area.exterior)[:-1]
     (match,) = siou_of_many([ring], target)
     if not target.holes:
         return match.iou_exact
-    laid = shapely.transform(area, match.transform.apply)
-    openings = np.array([shapely.Polygon(opening) for opening in laid.interiors], dtype=object)
     missing = shapely.difference(shapely.Polygon(target.points), target.polygon)
-    mostly = shapely.area(shapely.intersection(openings, missing)) > 0.5 * shapely.area(openings)
-    shown = shapely.Polygon(laid.exterior).difference(shapely.union_all(openings[mostly]))
-    common = float(shown.intersection(target.polygon).area)
-    return common / (float(shown.area) + target.polygon.area - common)
+
+    def turned(angle: float) -> float:
+        laid = shapely.transform(area, Similarity(1.0, angle).compose(match.transform).apply)
+        openings = np.array([shapely.Polygon(opening) for opening in laid.interiors], dtype=object)
+        mostly = shapely.area(shapely.intersection(openings, missing)) > 0.5 * shapely.area(openings)
+        shown = shapely.Polygon(laid.exterior).difference(shapely.union_all(openings[mostly]))
+        common = float(shown.intersection(target.polygon).area)
+        return common / (float(shown.area) + target.polygon.area - common)
+
+    step = 2.0 * math.pi / TURNS
+    best, angle = max((turned(step * number), step * number) for number in range(TURNS))
+    for halving in range(1, HALVINGS + 1):
+        around = (angle - step / 2**halving, angle + step / 2**halving)
+        best, angle = max((best, angle), *((turned(other), other) for other in around))
+    return best
 
 
 def siou_near(shape: FloatArray, target: Outline, pose: Similarity) -> ShapeMatch:

@@ -36,13 +36,17 @@ from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, check_phi
 from kirigami_studio.lattice.ratio_field import frozen
 from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.lattice.symmetry import symmetry_of
+from kirigami_studio.lattice.symmetry import nearly_symmetric
 from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
 KEEP = 0.15
+#: The same where the target has holes: what stays at hinges in a hole is seen, of an edge hardly.
+HOLE_KEEP = 0.1
 #: A hole of which less is open counts as closed; and below this area (unit cells squared) that is for its size.
 MOSTLY_OPEN, SMALL_HOLE = 0.5, 1.0
+#: Room for connectors takes ratios off their images by less than this (log10); it leaves designs symmetric to the eye.
+NEARLY = 0.2
 #: Between these depths hinges hold and panels can still be trimmed.
 SMALLEST_KEEP, LARGEST_KEEP = 0.02, 0.4
 
@@ -176,7 +180,7 @@ def _deep_parts(deployment: Deployment, place: Polygon, phi: float, keep: float)
     voids = polygons(deployment.nodes(phi)[tables.void_nodes].reshape(-1, 4, 2))
     ends = np.where(tables.even_void[..., None], tables.void_nodes[..., [3, 1]], tables.void_nodes[..., [0, 2]])
     area, shared = shapely.area(voids).reshape(grid), shapely.area(shapely.intersection(voids, place)).reshape(grid)
-    symmetry = symmetry_of(deployment.sheet)
+    symmetry = nearly_symmetric(deployment.sheet, NEARLY)
     images = None if symmetry is None else symmetry.on(*grid).source[:, : area.size]
     gain = shared - STICKING_OUT * (area - shared)
     open_inside = bool(place.interiors)

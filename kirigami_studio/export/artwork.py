@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
@@ -38,8 +38,12 @@ class ArtPicture:
     name: str  #: of the file it was read from
     content: bytes  #: PNG or JPEG, upright, 8 bits a channel, RGB or RGBA
     size: tuple[int, int]  #: (width, height), pixels
+    #: tuple of (P, 2) float, pixels; lines of an SVG, which pieces get engraved; a closed one repeats its first point
+    lines: tuple[FloatArray, ...] = field(default=(), compare=False, repr=False)
+    line_hash: int = field(default=0, init=False, repr=False)  #: of the lines, by which pictures are compared
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "line_hash", hash(tuple(line.tobytes() for line in self.lines)) if self.lines else 0)
         if len(self.content) > LARGEST_PICTURE or min(self.size) < 1:
             megabytes, limit = len(self.content) / 2**20, LARGEST_PICTURE // 2**20
             raise TargetError("artwork.picture_too_large", name=self.name, megabytes=megabytes, limit=limit)
@@ -124,6 +128,11 @@ class Artwork:
     def __post_init__(self) -> None:
         if not FEWEST_STRIPES <= self.stripes <= MOST_STRIPES:
             raise ExportError("artwork.stripes", stripes=self.stripes, fewest=FEWEST_STRIPES, most=MOST_STRIPES)
+
+    @property
+    def has_lines(self) -> bool:
+        """Whether a picture of it has lines, which pieces get engraved."""
+        return any(laid.picture.lines for laid in self.laid)
 
     @property
     def laid(self) -> tuple[Laid, ...]:

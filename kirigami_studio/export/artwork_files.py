@@ -1,8 +1,9 @@
 """A printed sheet -> SVG, PDF and PNG in true millimetres, in register with the cut file, and a picture of it opened.
 
-All three files have the frame of the cut file of the same plan and profile: the same origin and unit, a margin around
-it, and marks in the margin on the lines of the frame's edges.  In SVG and PDF the picture keeps its own pixels; in PNG
-it has the resolution asked for.  The PDF is one page, or spread over pages of the job's paper as that of the cuts is.
+All three files have the frame of the cut file of the same plan and profile, or of the same bed of pieces: the same
+origin and unit, a margin around it, and marks in the margin on the lines of the frame's edges.  In SVG and PDF the
+picture keeps its own pixels; in PNG it has the resolution asked for.  The PDF is one page, or spread over pages of the
+job's paper as that of the cuts is.
 """
 
 from __future__ import annotations
@@ -22,8 +23,10 @@ import shapely
 from PIL import Image, ImageDraw
 
 from kirigami_studio import __version__
+from kirigami_studio.assembly.nesting import LaidShape
 from kirigami_studio.export.artwork import ArtPicture, Artwork
 from kirigami_studio.export.artwork_patches import Patch, PrintedSheet, opened_patches, printed_patches, rings_of
+from kirigami_studio.export.artwork_pieces import PrintedPieces, bed_patches, posed_patches
 from kirigami_studio.export.artwork_raster import BitmapFrame, most_dpi, paint
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.paper import Tile, Tiling, find_paper, tile
@@ -55,9 +58,21 @@ OPENED_MARGIN_MM = 3.0
 OPENED_OVERLAP = 4e-4
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PrintedBed:
+    """Pieces on a bed that are printed."""
+
+    name: str  #: stem of its cut file
+    pieces: PrintedPieces
+    placed: Mapping[str, LaidShape]  #: where they lie, by their ids
+    size_mm: tuple[float, float]  #: width and height of the cut file
+    facts: Mapping[str, str]  #: how the cut file was made
+    digest: str  #: of the design
+
+
 @dataclass(frozen=True, eq=False)
 class ArtworkJob:
-    """The contents of the files of a printed sheet.
+    """The contents of the files of a printed sheet, or of the pieces on one bed.
 
     Raises
     ------
@@ -66,20 +81,31 @@ class ArtworkJob:
     """
 
     artwork: Artwork
-    job: ExportJob  #: with its plan
+    job: ExportJob  #: with its plan, or with pieces
     dpi: float = USUAL_DPI  #: of the PNG
     bleed_mm: float = USUAL_BLEED_MM  #: how far panels at the sheet's edge are printed beyond it
     margin_mm: float = USUAL_MARGIN_MM  #: around the frame of the cut file; 0 for pages that are exactly that frame
+    bed: PrintedBed | None = None  #: of pieces; None for a sheet
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.margin_mm <= MOST_MARGIN_MM:
             raise ExportError("artwork.impossible_margin", margin_mm=self.margin_mm, most=MOST_MARGIN_MM)
 
     @classmethod
-    def usual(cls, artwork: Artwork, job: ExportJob) -> ArtworkJob:
+    def usual(cls, artwork: Artwork, job: ExportJob, bed: PrintedBed | None = None) -> ArtworkJob:
         """That of somebody who asks for no numbers: 300 dpi, or as many as a bitmap of its size may have."""
-        made = cls(artwork, job)
+        made = cls(artwork, job, bed=bed)
         return replace(made, dpi=min(made.dpi, most_dpi(*made.page_mm)))
+
+    @property
+    def stem(self) -> str:
+        """Of its files' names."""
+        return "artwork" if self.bed is None else f"artwork-{self.bed.name}"
+
+    @property
+    def digest(self) -> str:
+        """Of the design."""
+        return self.job.required_plan.design_hash if self.bed is None else self.bed.digest
 
     @cached_property
     def sheet(self) -> PrintedSheet:
@@ -88,6 +114,8 @@ class ArtworkJob:
     @cached_property
     def patches(self) -> tuple[Patch, ...]:
         """Those of the first copy, in the frame of the cut file."""
+        if self.bed is not None:
+            return bed_patches(self.bed.pieces, self.artwork, self.bed.placed, self.bleed_mm)
         plan = self.job.required_plan
         origin = frame_origin(plan, find_profile(self.job.profile))
         found = printed_patches(self.artwork, self.sheet, self.bleed_mm, plan.kerf_mm)
@@ -96,11 +124,15 @@ class ArtworkJob:
     @property
     def places(self) -> FloatArray:
         """Where the copies lie: (C, 2) mm."""
+        if self.bed is not None:
+            return np.zeros((1, 2))
         return self.job.required_plan.copies.places
 
     @cached_property
     def frame_mm(self) -> tuple[float, float]:
         """Width and height of the cut file; its lower left corner is (0, 0)."""
+        if self.bed is not None:
+            return self.bed.size_mm
         return extent(strokes_of(self.job.required_plan, find_profile(self.job.profile)))
 
     @property
@@ -167,6 +199,8 @@ class ArtworkJob:
     @property
     def facts(self) -> Mapping[str, str]:
         """How the files were made."""
+        if self.bed is not None:
+            return self.bed.facts
         return facts_of(self.job.required_plan, find_profile(self.job.profile))
 
 
@@ -176,7 +210,8 @@ def write_artwork(work: ArtworkJob, folder: str | Path) -> tuple[Path, ...]:
     Returns
     -------
     files : tuple of Path
-        ``artwork.svg``, ``artwork.pdf``, ``artwork.png`` and ``artwork_opened.png``.
+        ``artwork.svg``, ``artwork.pdf``, ``artwork.png`` and ``artwork_opened.png``; of a bed, ``artwork-layer-1.svg``
+        and so on.
 
     Raises
     ------
@@ -185,7 +220,8 @@ def write_artwork(work: ArtworkJob, folder: str | Path) -> tuple[Path, ...]:
     """
     home = Path(folder)
     page, _ = work.page, work.tiling  # too many pixels or pages are refused before anything is written
-    svg, pdf, png, opened = (home / f"artwork{end}" for end in (".svg", ".pdf", ".png", "_opened.png"))
+    svg, pdf, png = (home / f"{work.stem}{end}" for end in (".svg", ".pdf", ".png"))
+    opened = home / "artwork_opened.png"
     write_atomically(svg, _svg_bytes(work), lambda written: _verify_svg(written, work))
     write_atomically(pdf, _pdf_bytes(work), lambda written: _verify_pdf(written, work))
     write_image(printed_image(work, page), png, work.facts, work.dpi)
@@ -205,12 +241,18 @@ def printed_image(work: ArtworkJob, page: BitmapFrame) -> Image.Image:
 
 
 def opened_image(work: ArtworkJob) -> Image.Image:
-    """The printed sheet opened to its target angle, over the target's outline, on white."""
-    sheet = work.sheet
-    width = float(np.ptp(sheet.corners[..., 0]))
-    patches = opened_patches(work.artwork, sheet, sheet.design.phi_target, OPENED_OVERLAP * width)
+    """The printed sheet, or all pieces, opened over the target's outline, on white."""
+    if work.bed is None:
+        sheet = work.sheet
+        width = float(np.ptp(sheet.corners[..., 0]))
+        scale, outline = sheet.design.mm_per_world(width), sheet.target
+        patches = opened_patches(work.artwork, sheet, sheet.phi_target, OPENED_OVERLAP * width)
+    else:
+        pieces = work.bed.pieces
+        scale, outline = pieces.mm_per_world, pieces.target
+        patches = posed_patches(pieces, work.artwork, pieces.phi_target)
     clouds = [np.array(patch.region.bounds).reshape(2, 2) for patch in patches]
-    target = [ring * sheet.design.mm_per_world(width) for ring in as_rings(sheet.target)]
+    target = [ring * scale for ring in as_rings(outline)]
     points = np.concatenate([*clouds, *target])
     low, high = points.min(axis=0) - OPENED_MARGIN_MM, points.max(axis=0) + OPENED_MARGIN_MM
     dpi = OPENED_SIDE / float((high - low).max()) * MM_PER_INCH
@@ -277,7 +319,7 @@ def _pdf_bytes(work: ArtworkJob) -> bytes:
     tiling = work.tiling
     size = work.page_mm if tiling is None else tiling.page
     canvas = make_canvas(stream, pagesize=tuple(side * mm for side in size), invariant=1)
-    canvas.setTitle(f"Kirigami artwork {work.job.required_plan.design_hash}")
+    canvas.setTitle(f"Kirigami artwork {work.digest}")
     canvas.setCreator(f"Kirigami Studio {__version__}")
     canvas.setSubject("; ".join(f"{key} {value}" for key, value in work.facts.items()))
     names = _pictures(work)

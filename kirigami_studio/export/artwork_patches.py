@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import shapely
@@ -70,6 +71,15 @@ class PrintedSheet:
         parts = () if design.trim is None else design.trim.kept
         cells = panels_in_mm(design.deployment, parts, width_mm, np.zeros(2))
         return cls(design, target, np.array(panels_in_mm(design.deployment, (), width_mm, np.zeros(2))), cells)
+
+    @property
+    def phi_target(self) -> float:
+        """Angle of the opened sheet, radians."""
+        return self.design.phi_target
+
+    def bands(self, artwork: Artwork) -> BaseGeometry | None:
+        """Stripes of the flat sheet that show the second picture; None without one."""
+        return None if artwork.second is None else bands_across(self.corners.reshape(-1, 2), artwork.stripes)
 
     def motion(self, phi: float) -> PanelSimilarities:
         """How the panels come from the flat sheet (mm) to the world at an angle."""
@@ -139,7 +149,7 @@ def printed_patches(artwork: Artwork, sheet: PrintedSheet, bleed_mm: float, kerf
     if not 0.0 <= bleed_mm <= MOST_BLEED_MM:
         raise ExportError("artwork.impossible_bleed", bleed_mm=bleed_mm, most=MOST_BLEED_MM)
     regions = _regions(sheet.cells, bleed_mm, max(0.5 * kerf_mm, LEAST_OVERLAP_MM))
-    return _patches(artwork, sheet, regions)
+    return patches_of(artwork, sheet, regions)
 
 
 def opened_patches(artwork: Artwork, sheet: PrintedSheet, phi: float, overlap_mm: float = 0.0) -> tuple[Patch, ...]:
@@ -150,13 +160,29 @@ def opened_patches(artwork: Artwork, sheet: PrintedSheet, phi: float, overlap_mm
     motion = sheet.motion(phi)
     return tuple(
         patch.moved(complex(motion.factor[patch.panel]) * scale, complex(motion.shift[patch.panel]) * scale)
-        for patch in _patches(artwork, sheet, list(regions))
+        for patch in patches_of(artwork, sheet, list(regions))
     )
 
 
-def _patches(artwork: Artwork, sheet: PrintedSheet, regions: Sequence[BaseGeometry]) -> tuple[Patch, ...]:
-    """The first picture in all regions, and over it the second one in every other stripe."""
-    bands = None if artwork.second is None else _bands(sheet, artwork.stripes)
+class Printable(Protocol):
+    """Rigid parts that pictures are laid on: the panels of a sheet, or pieces."""
+
+    @property
+    def phi_target(self) -> float: ...
+
+    @property
+    def cells(self) -> tuple[FloatArray, ...]: ...
+
+    def motion(self, phi: float) -> PanelSimilarities: ...
+
+    def box(self, state: SheetState) -> FloatArray: ...
+
+    def bands(self, artwork: Artwork) -> BaseGeometry | None: ...
+
+
+def patches_of(artwork: Artwork, sheet: Printable, regions: Sequence[BaseGeometry]) -> tuple[Patch, ...]:
+    """The first picture in regions (flat, mm), the second one over it in every other stripe."""
+    bands = sheet.bands(artwork)
     shown = [(laid.picture, _maps(laid, sheet)) for laid in artwork.laid]
     found = []
     for number, region in enumerate(regions):
@@ -167,9 +193,9 @@ def _patches(artwork: Artwork, sheet: PrintedSheet, regions: Sequence[BaseGeomet
     return tuple(found)
 
 
-def _bands(sheet: PrintedSheet, stripes: int) -> BaseGeometry:
-    """Every other one of upright stripes of one width across the flat sheet and what lies around it."""
-    low, high = sheet.corners.min(axis=(0, 1)), sheet.corners.max(axis=(0, 1))
+def bands_across(points: FloatArray, stripes: int) -> BaseGeometry:
+    """Every other one of upright stripes of one width across points (P, 2), mm."""
+    low, high = points.min(axis=0), points.max(axis=0)
     width = float(high[0] - low[0]) / stripes
     beyond = 2 * math.ceil(MOST_BLEED_MM / (2.0 * width))
     left = low[0] + width * np.arange(1 - beyond, stripes + beyond, 2)
@@ -177,13 +203,13 @@ def _bands(sheet: PrintedSheet, stripes: int) -> BaseGeometry:
     return MultiPolygon(list(shapely.box(left, low[1] - room, left + width, high[1] + room)))
 
 
-def _maps(laid: Laid, sheet: PrintedSheet) -> PanelSimilarities:
+def _maps(laid: Laid, sheet: Printable) -> PanelSimilarities:
     """The picture's map into the flat sheet, for each panel."""
     low, high = sheet.box(laid.state)
     factor, shift = laid.map_into(low, high)
     if laid.state is SheetState.FLAT:
         return PanelSimilarities(np.full(len(sheet.cells), factor), np.full(len(sheet.cells), shift))
-    there = sheet.motion(sheet.design.phi_target)
+    there = sheet.motion(sheet.phi_target)
     return PanelSimilarities(factor / there.factor, (shift - there.shift) / there.factor)
 
 

@@ -5,14 +5,17 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageOps
 
 from kirigami_studio.export.artwork import ArtPicture
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.outlines.read_image import MOST_MEGABYTES, opened_image
+from kirigami_studio.outlines.read_svg import painted_lines
 from kirigami_studio.outlines.source_file import decoding, read_bytes
 from kirigami_studio.outlines.svg_safety import self_contained_svg
 
@@ -21,6 +24,8 @@ FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")
 KEPT_PIXELS = 24_000_000
 #: An SVG is drawn once, with so many pixels along its longer side.
 SVG_SIDE = 3000
+#: Points of the lines of an SVG that are kept, to be engraved on pieces.
+MOST_LINE_POINTS = 100_000
 #: Larger pictures (bytes) without transparency are kept as JPEG.
 LARGEST_PNG = 8 * 2**20
 JPEG_QUALITY = 95
@@ -52,9 +57,20 @@ def read_picture(path: str | Path, draw_svg: DrawSvg | None = None) -> ArtPictur
         if draw_svg is None:
             raise TargetError("artwork.no_svg_here", name=path.name)
         with decoding(path, "artwork.picture_damaged"):
-            content = draw_svg(self_contained_svg(content), SVG_SIDE)
+            drawing = self_contained_svg(content)
+            picture = picture_of(path.name, draw_svg(drawing, SVG_SIDE))
+            return replace(picture, lines=_lines_of(drawing, picture.size))
     with decoding(path, "artwork.picture_damaged"):
         return picture_of(path.name, content)
+
+
+def _lines_of(drawing: bytes, size: tuple[int, int]) -> tuple[FloatArray, ...]:
+    """The lines of an SVG in the pixels of its picture; none where there are too many."""
+    try:
+        lines = painted_lines(drawing, size)
+    except TargetError:  # it is a picture all the same
+        return ()
+    return lines if sum(map(len, lines)) <= MOST_LINE_POINTS else ()
 
 
 def picture_of(name: str, content: bytes) -> ArtPicture:

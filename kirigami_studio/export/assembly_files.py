@@ -39,7 +39,15 @@ from kirigami_studio.export.lightburn import strokes_lightburn, write_project
 from kirigami_studio.export.lightburn_reading import read_project, scan_project
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.pieces_read import FoundPiece, KnownOutlines, found_pieces, motion_findings
-from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, Profile, find_profile
+from kirigami_studio.export.profile import (
+    ARTWORK_LAYER,
+    DEFAULT_PROFILE,
+    ENGRAVED_LAYERS,
+    NAME_LAYER,
+    DxfVersion,
+    Profile,
+    find_profile,
+)
 from kirigami_studio.export.provenance import PROGRAM, VERDICT, exactly, origin_facts
 from kirigami_studio.export.strokes import Stroke, Work, cutting_work, extent
 from kirigami_studio.export.svg import strokes_svg, write_svg
@@ -197,7 +205,7 @@ class AssemblyJob:
     def works(self) -> tuple[Work, ...]:
         """Length and time of the cuts of each bed."""
         cuts = [
-            [stroke for stroke in bed.strokes(find_profile(self.profile)) if stroke.layer != NAME_LAYER]
+            [stroke for stroke in bed.strokes(find_profile(self.profile)) if stroke.layer not in ENGRAVED_LAYERS]
             for bed in self.beds
         ]
         return tuple(cutting_work(strokes, self.material, self.machine) for strokes in cuts)
@@ -288,7 +296,7 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
             by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces if piece.id in moving})
     record = pieces_json(job.whole, holds=job.holds)
     write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
-    verified.append(_motion_verified(job, fresh / PIECES, home / PIECES, by_kind, known))
+    verified.append(_motion_verified(job, record, fresh / PIECES, home / PIECES, by_kind, known))
     write_atomically(fresh / PARTS, parts_csv(job).encode())
     sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
     sheet = replace(sheet, grips=job.grips)
@@ -318,7 +326,7 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> 
 def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[str, str]:
     """The record in a bed's file of its making."""
     profile, size = find_profile(job.profile), bed.size_mm
-    numbers = sum(stroke.layer == NAME_LAYER for stroke in strokes)
+    numbers, artwork = (sum(stroke.layer == name for stroke in strokes) for name in (NAME_LAYER, ARTWORK_LAYER))
     return {
         PROGRAM: __version__,
         "CONSTRUCTION": job.construction.value,
@@ -340,8 +348,9 @@ def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[
         "PATHS": "edges of the finished parts: apply the kerf offset of the machine"
         if profile.slots
         else "beam centre lines, kerf already allowed for: apply no kerf offset",
-        "LINES": f"{len(strokes) - numbers}",
+        "LINES": f"{len(strokes) - numbers - artwork}",
         **({"ENGRAVED_LINES": f"{numbers}"} if numbers else {}),
+        **({"ARTWORK_LINES": f"{artwork}"} if artwork else {}),
         **({VERDICT: job.verdict} if job.verdict else {}),
         **origin_facts(job.provenance),
     }
@@ -563,10 +572,9 @@ def _plain(points: FloatArray) -> Any:
 
 
 def _poses(assembly: Assembly, phi: float) -> dict[str, list[float]]:
-    return {
-        piece.id: [round(x, LENGTH_DECIMALS) + 0.0, round(y, LENGTH_DECIMALS) + 0.0, round(turn, TURN_DECIMALS) + 0.0]
-        for piece, (x, y, turn) in zip(assembly.pieces, assembly.poses(phi).tolist(), strict=True)
-    }
+    poses = assembly.poses(phi)
+    rounded = np.column_stack([poses[:, :2].round(LENGTH_DECIMALS), poses[:, 2].round(TURN_DECIMALS)]) + 0.0
+    return dict(zip((piece.id for piece in assembly.pieces), rounded.tolist(), strict=True))
 
 
 def _ring(hole: RoundHole) -> FloatArray:
@@ -580,18 +588,24 @@ def _ring(hole: RoundHole) -> FloatArray:
 
 
 def _motion_verified(
-    job: AssemblyJob, path: Path, goal: Path, by_kind: Mapping[str, Mapping[str, FoundPiece]], known: KnownOutlines
+    job: AssemblyJob,
+    meant: Mapping[str, Any],
+    path: Path,
+    goal: Path,
+    by_kind: Mapping[str, Mapping[str, FoundPiece]],
+    known: KnownOutlines,
 ) -> Verification:
     """Read pieces and motion back, and put the pieces of each kind of file together."""
     record = json.loads(path.read_bytes())
-    right = record == pieces_json(job.whole, holds=job.holds)
+    right = record == meant
     findings = [Finding.judged(right, "verify.motion_as_planned" if right else "verify.motion_differs", angles=ANGLES)]
     for kind, pieces in by_kind.items():
         if not right or set(pieces) != set(job.whole.by_id):
             continue
         moved = [*motion_findings(pieces, record, known), *hold_findings(pieces, record)]
         findings += [replace(finding, reader=kind.removeprefix(".").upper()) for finding in moved]
-    far = np.concatenate([job.assembly.placed(piece, piece.outline, math.pi) for piece in job.assembly.pieces])
+    place = job.assembly.placing(math.pi)
+    far = np.concatenate([place(piece, piece.outline) for piece in job.assembly.pieces])
     width, height = np.ptp(far, axis=0).tolist()
     return Verification(
         path=goal,

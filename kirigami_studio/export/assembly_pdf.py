@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,7 @@ from shapely.geometry import LineString, Polygon
 from kirigami_studio import __version__
 from kirigami_studio.assembly.driving import BOARD, HANDLE, DriveParts
 from kirigami_studio.assembly.holding import HoldPlace
-from kirigami_studio.assembly.pieces import Assembly, Hinge
+from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece
 from kirigami_studio.export import picture
 from kirigami_studio.export.cut_bed import CutBed
 from kirigami_studio.export.drive_files import drive_steps
@@ -37,6 +38,7 @@ from kirigami_studio.export.pdf_pages import (
     draw_line,
     draw_pages,
     draw_ruler,
+    path_of,
     stroke_colour,
     to_page,
 )
@@ -200,13 +202,14 @@ def _one_page(size: Size) -> Tiling:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Shape:
-    """A piece in a picture, mm: its rings, the outer one first, its number and its place."""
+    """A piece in a picture, mm: rings, the outer one first and coarse, number, place, lines of artwork."""
 
     layer: int
     rings: tuple[FloatArray, ...]
     number: str
     at: FloatArray
     room_mm: float
+    lines: tuple[FloatArray, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -234,35 +237,34 @@ class _Drawing:
     def of(cls, assembly: Assembly, phi: float, target: ShapeRings = None, holds: Sequence[HoldPlace] = ()) -> _Drawing:
         """The sheet at an angle."""
         pieces = sorted(assembly.pieces, key=lambda piece: -piece.layer)
-        placed = {piece.id: assembly.placed(piece, piece.outline, phi) for piece in pieces}
+        place = assembly.placing(phi)
+        placed = {piece.id: place(piece, piece.outline) for piece in pieces}
         everything = np.concatenate([*placed.values(), *as_rings(target)])
         low, high = everything.min(axis=0), everything.max(axis=0)
         shapes = [
             _Shape(
                 piece.layer,
                 (
-                    placed[piece.id] - low,
-                    *(assembly.placed(piece, ring, phi) - low for ring in piece.openings),
-                    *(
-                        assembly.placed(piece, hole.centre + 0.5 * hole.diameter_mm * CIRCLE, phi) - low
-                        for hole in piece.holes
-                    ),
+                    _coarse(placed[piece.id] - low),
+                    *(place(piece, ring) - low for ring in piece.openings),
+                    *(place(piece, hole.centre + 0.5 * hole.diameter_mm * CIRCLE) - low for hole in piece.holes),
                 ),
                 piece.id,
-                assembly.placed(piece, np.asarray(piece.label_at, dtype=np.float64), phi) - low,
+                place(piece, np.asarray(piece.label_at, dtype=np.float64)) - low,
                 _room(piece.outline, piece.label_mm),
+                _lines(piece, partial(place, piece), low),
             )
             for piece in pieces
         ]
-        pins = np.array([_pin_place(assembly, hinge, phi) - low for hinge in assembly.hinges]).reshape(-1, 2)
+        pins = _pin_places(assembly, phi) - low
         width, height = (high - low).tolist()
         signs = []
-        for place in holds:
+        for hold in holds:
             rings: list[FloatArray] = []
-            for name, at in zip(place.parts, place.at, strict=True):
-                points = assembly.placed(assembly.by_id[name], at, phi) - low
-                rings += [point + 0.5 * place.hole_mm * CIRCLE for point in points] if place.hole_mm else [points]
-            signs.append((f"{place.number}", tuple(rings)))
+            for name, at in zip(hold.parts, hold.at, strict=True):
+                points = place(assembly.by_id[name], at) - low
+                rings += [point + 0.5 * hold.hole_mm * CIRCLE for point in points] if hold.hole_mm else [points]
+            signs.append((f"{hold.number}", tuple(rings)))
         return cls(tuple(shapes), pins, tuple(ring - low for ring in as_rings(target)), (width, height), tuple(signs))
 
     @classmethod
@@ -271,11 +273,12 @@ class _Drawing:
         shapes = [
             _Shape(
                 bed.layer,
-                (place.put(cuts.outline), *(place.put(ring) for ring in cuts.openings),
+                (_coarse(place.put(cuts.outline)), *(place.put(ring) for ring in cuts.openings),
                  *(place.put(hole.centre + 0.5 * hole.diameter_mm * CIRCLE) for hole in cuts.holes)),
                 cuts.piece.id,
                 place.put(np.asarray(cuts.piece.label_at, dtype=np.float64)),
                 _room(cuts.piece.outline, cuts.piece.label_mm),
+                _lines(cuts.piece, place.put, np.zeros(2)),
             )
             for cuts, place in sorted(bed.placed, key=lambda placed: placed[0].piece.id != bed.frame)
         ]  # fmt: skip
@@ -288,14 +291,24 @@ _TURN = 2.0 * np.pi * np.arange(PIN_CORNERS) / PIN_CORNERS
 CIRCLE: FloatArray = np.column_stack([np.cos(_TURN), np.sin(_TURN)])
 
 
+def _lines(piece: Piece, put: Callable[[FloatArray], FloatArray], low: FloatArray) -> tuple[FloatArray, ...]:
+    """Lines of artwork on a piece, each (P, 2), mm, where it is put, from a place ``low``."""
+    if not piece.drawn:
+        return ()
+    ends = np.cumsum([len(line) for line in piece.drawn])[:-1]
+    return tuple(np.split(put(np.concatenate(piece.drawn)) - low, ends))
+
+
 def _room(outline: FloatArray, label_mm: float) -> float:
     """Height (mm) that a number may have in a picture."""
     return max(label_mm, 0.25 * math.sqrt(abs(Polygon(outline).area)))
 
 
-def _pin_place(assembly: Assembly, hinge: Hinge, phi: float) -> FloatArray:
-    piece = assembly.by_id[hinge.pieces[0]]
-    return assembly.placed(piece, np.asarray(hinge.at[0]), phi)
+def _pin_places(assembly: Assembly, phi: float) -> FloatArray:
+    """Places (H, 2) of all pins at an angle, mm."""
+    place = assembly.placing(phi)
+    places = [place(assembly.by_id[hinge.pieces[0]], np.asarray(hinge.at[0])) for hinge in assembly.hinges]
+    return np.array(places).reshape(-1, 2)
 
 
 def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> None:
@@ -303,15 +316,16 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
     canvas.setLineWidth(0.35 * LINE_MM * mm if scale < 1.0 else LINE_MM * mm)
     for ring in drawing.target:
         fill = picture.TARGET_FILL if ring is drawing.target[0] else picture.PAPER
-        _fill(canvas, [corner + scale * ring], fill)
+        _fill(canvas, corner + scale * ring, fill)
     for shape in drawing.shapes:
-        rings = [corner + _coarse(scale * ring) for ring in shape.rings]
-        _fill(canvas, rings[:1], FILLS[shape.layer])
-        for ring in rings[1:]:
-            _fill(canvas, [ring], picture.PAPER)
         stroke_colour(canvas, EDGES[shape.layer])
-        for ring in rings:
-            draw_line(canvas, ring, closed=True)
+        for at, ring in enumerate(shape.rings):
+            _ink(canvas, FILLS[shape.layer] if at == 0 else picture.PAPER)
+            canvas.drawPath(path_of(corner + scale * ring, closed=True), stroke=1, fill=1, fillMode=1)
+        stroke_colour(canvas, picture.NAME_COLOUR)
+        for line in shape.lines:
+            coarse = shapely.simplify(LineString(scale * line), UNSEEN_MM)
+            draw_line(canvas, corner + shapely.get_coordinates(coarse), closed=False)
     for ring in drawing.target:
         stroke_colour(canvas, picture.TARGET_EDGE)
         draw_line(canvas, corner + scale * ring, closed=True)
@@ -322,29 +336,22 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         _number(canvas, shape, scale, corner)
     for number, marks in drawing.holds:
         for ring in marks:
-            _fill(canvas, [corner + scale * ring], HOLD)
+            _fill(canvas, corner + scale * ring, HOLD)
         x, y = ((corner + scale * np.concatenate(marks).max(axis=0)) * mm).tolist()
-        canvas.setFillColorRGB(*(channel / 255.0 for channel in HOLD))
+        _ink(canvas, HOLD)
         canvas.setFont("Helvetica-Bold", MOST_POINTS)
         canvas.drawString(x + 0.2 * BESIDE_POINTS, y - BESIDE_POINTS, number)
 
 
 def _coarse(ring: FloatArray) -> FloatArray:
-    """A ring (L, 2), mm on the page, without corners that nobody sees."""
+    """A ring (L, 2), mm, without corners that nobody sees."""
     found: FloatArray = shapely.get_coordinates(shapely.simplify(shapely.LinearRing(ring), UNSEEN_MM))[:-1]
     return found
 
 
-def _fill(canvas: Any, rings: Sequence[FloatArray], colour: Colour) -> None:
-    canvas.setFillColorRGB(*(channel / 255.0 for channel in colour))
-    path = canvas.beginPath()
-    for ring in rings:
-        (x, y), *rest = ring.tolist()
-        path.moveTo(x * mm, y * mm)
-        for x, y in rest:
-            path.lineTo(x * mm, y * mm)
-        path.close()
-    canvas.drawPath(path, stroke=0, fill=1, fillMode=1)
+def _fill(canvas: Any, ring: FloatArray, colour: Colour) -> None:
+    _ink(canvas, colour)
+    canvas.drawPath(path_of(ring, closed=True), stroke=0, fill=1, fillMode=1)
 
 
 def _number(canvas: Any, shape: _Shape, scale: float, corner: FloatArray) -> None:
@@ -355,8 +362,9 @@ def _number(canvas: Any, shape: _Shape, scale: float, corner: FloatArray) -> Non
     canvas.drawCentredString(x * mm, y * mm - 0.35 * points, shape.number)
 
 
-def _ink(canvas: Any) -> None:
-    canvas.setFillColorRGB(*(channel / 255.0 for channel in picture.INK))
+def _ink(canvas: Any, colour: Colour = picture.INK) -> None:
+    """Fill areas and letters with a colour from now on."""
+    canvas.setFillColorRGB(*(channel / 255.0 for channel in colour))
 
 
 def _fitting(drawing: _Drawing, box: Size) -> float:
@@ -457,17 +465,17 @@ def _draw_grips(
     held, pulled = (corner + scale * (one.at - np.array([0.0, BELOW * one.room_mm])) for one in shapes)
     way = (ahead[1] - here[1]) - (ahead[0] - here[0])
     length = float(np.hypot(*way))
-    _fill(canvas, [held + GRIP_MM * CIRCLE], GRIP)
+    _fill(canvas, held + GRIP_MM * CIRCLE, GRIP)
     if length <= 0.0:
         return
     along = way / length
     across = np.array([-along[1], along[0]])
     tip = pulled + ARROW_MM * along
     neck = tip - HEAD_MM * along
-    _fill(canvas, [pulled + GRIP_MM * CIRCLE], GRIP)
-    _fill(canvas, [np.array([tip, neck + 0.6 * HEAD_MM * across, neck - 0.6 * HEAD_MM * across])], GRIP)
+    _fill(canvas, pulled + GRIP_MM * CIRCLE, GRIP)
+    _fill(canvas, np.array([tip, neck + 0.6 * HEAD_MM * across, neck - 0.6 * HEAD_MM * across]), GRIP)
     shaft = 0.25 * GRIP_MM * across
-    _fill(canvas, [np.array([pulled + shaft, neck + shaft, neck - shaft, pulled - shaft])], GRIP)
+    _fill(canvas, np.array([pulled + shaft, neck + shaft, neck - shaft, pulled - shaft]), GRIP)
 
 
 def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
@@ -477,7 +485,7 @@ def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
     canvas.setLineWidth(LINE_MM * mm)
     for layer, words in sheet.legend.items():
         ring = square + np.array([x, y])
-        _fill(canvas, [ring], FILLS[layer])
+        _fill(canvas, ring, FILLS[layer])
         stroke_colour(canvas, EDGES[layer])
         draw_line(canvas, ring, closed=True)
         x = _words(canvas, tr(words), x + 6.0, y)
@@ -486,10 +494,10 @@ def _legend(canvas: Any, sheet: AssemblySheet, y: float, scale: float) -> None:
         draw_line(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, closed=True)
         x = _words(canvas, tr("pin"), x + 5.0, y)
     if sheet.holds:
-        _fill(canvas, [np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE], HOLD)
+        _fill(canvas, np.array([x + 1.5, y + 1.5]) + 1.2 * CIRCLE, HOLD)
         x = _words(canvas, tr("keeps it so"), x + 5.0, y)
     if sheet.grips is not None:
-        _fill(canvas, [np.array([x + 1.5, y + 1.5]) + GRIP_MM * CIRCLE], GRIP)
+        _fill(canvas, np.array([x + 1.5, y + 1.5]) + GRIP_MM * CIRCLE, GRIP)
         held, pulled = sheet.grips
         x = _words(canvas, tr("hold {held}, pull {pulled}", held=held, pulled=pulled), x + 5.0, y)
     _words(canvas, tr("pictures at 1 : {scale:.1f}", scale=1.0 / scale), x, y)
@@ -508,7 +516,8 @@ def pins_in_order(assembly: Assembly) -> list[list[Hinge]]:
 
     Pins of one row of pieces and the next belong together, for they are put in side by side.
     """
-    places = {hinge.node: _pin_place(assembly, hinge, math.pi) for hinge in assembly.hinges}
+    nodes = [hinge.node for hinge in assembly.hinges]
+    places = dict(zip(nodes, _pin_places(assembly, math.pi).tolist(), strict=True))
     rows: dict[int, list[Hinge]] = {}
     for hinge in assembly.hinges:
         row = min(assembly.by_id[name].panel[0] for name in hinge.pieces)
@@ -629,7 +638,7 @@ def _draw_part(canvas: Any, flat: _Drawing, part: Tile) -> None:
     canvas.clipPath(clip, stroke=0, fill=0)
     here = [shape for shape in flat.shapes if window.intersects(Polygon(shape.rings[0]))]
     for shape in here:
-        _fill(canvas, [_coarse(shape.rings[0]) + shift], FILLS[shape.layer])
+        _fill(canvas, shape.rings[0] + shift, FILLS[shape.layer])
     canvas.restoreState()
     canvas.setLineWidth(LINE_MM * mm)
     for shape in here:
@@ -649,7 +658,7 @@ def _draw_part(canvas: Any, flat: _Drawing, part: Tile) -> None:
 
 def _verify(path: Path, flat: _Drawing, tiling: Tiling, before: Sequence[Size]) -> None:
     """Read the pages back: their sizes, and that those at true size hold every outline once."""
-    pages = read_pages(path)
+    pages = read_pages(path, len(tiling.tiles))
     sizes = [*before, *[tiling.page] * (len(tiling.tiles) + (len(tiling.tiles) > 1))]
     if len(pages) != len(sizes):
         raise ExportError("pdf.other_page_count", pages=len(pages), parts=len(sizes))

@@ -1,4 +1,4 @@
-"""Pieces of an assembly -> strokes of one bed: numbers, then holes, then outlines.
+"""Pieces of an assembly -> strokes of one bed: numbers, artwork, then holes, then outlines.
 
 A piece is cut to its finished size: the middle of the beam runs half a kerf outside its outline and inside its holes.
 Round holes stay circles.  In a corner that points into a piece, a beam leaves a fillet of half a kerf.
@@ -7,20 +7,21 @@ Round holes stay circles.  In a corner that points into a piece, a beam leaves a
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
 import shapely
+from scipy.spatial import cKDTree
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.backed import Board
 from kirigami_studio.assembly.nesting import Bed, LaidShape, nested
 from kirigami_studio.assembly.pieces import Piece, RoundHole
-from kirigami_studio.export.profile import NAME_LAYER, Profile
+from kirigami_studio.export.profile import ARTWORK_LAYER, NAME_LAYER, Profile
 from kirigami_studio.export.strokes import MITRE_LIMIT, Stroke
 from kirigami_studio.fabricate.cut_path import CutPath, Layer, flattened
 from kirigami_studio.fabricate.cut_plan import DECIMALS
@@ -34,15 +35,13 @@ from kirigami_studio.foundation.errors import FabricationError
 
 #: Material (mm) that stays between the cuts of neighbours.
 WEB_MM = 1.0
-#: Chords of a quarter circle of the beam; of a kerf of 5 mm they miss 0.2 um.
-BEAM_CHORDS = 64
-#: Chords of a corner that the beam goes round miss it by this (mm).
-CORNER_CHORD_MM = 1e-4
+#: Chords of the beam's circle, and of a corner that it goes round, miss them by this (mm).
+BEAM_CHORD_MM = 1e-4
 #: Material (mm) that may be left beside a sharp corner beyond the fillet of a beam.
 SHARP_MM = 5e-4
 #: Layers of a sheet, and the stem of the file of all parts behind them.
 LAYERS, BOARD = 2, "board"
-#: Distance of numbers from the marks of tabs, mm.
+#: Distance of numbers from the marks of tabs, and from lines of artwork where there is room, mm.
 CLEAR_OF_MARK_MM = 0.5
 #: Designs whose beds are kept, with the order of their cuts.
 MOST_KEPT = 16
@@ -90,7 +89,8 @@ class PieceCuts:
         inner = [_offset(piece, opening[::-1], -half, kerf_mm)[0][::-1] for opening in piece.openings]
         openings = (*inner, *pockets)
         holes = tuple(RoundHole(hole.centre, hole.diameter_mm - kerf_mm) for hole in piece.holes)
-        rounds = [shapely.Point(hole.centre).buffer(0.5 * hole.diameter_mm, quad_segs=ROUND) for hole in holes]
+        centres = shapely.points(np.array([hole.centre for hole in holes]).reshape(-1, 2))
+        rounds = shapely.buffer(centres, [0.5 * hole.diameter_mm for hole in holes], quad_segs=ROUND)
         solid = shapely.difference(Polygon(outline, openings), shapely.union_all(rounds))
         area: BaseGeometry = solid.buffer(-clearance_mm(kerf_mm))
         marks = [line for mark in piece.marks for line in shapely.get_parts(area.intersection(LineString(mark)))]
@@ -99,7 +99,17 @@ class PieceCuts:
             area = area.difference(shapely.union_all([Polygon(mark).buffer(CLEAR_OF_MARK_MM) for mark in piece.marks]))
         parts = [part for part in shapely.get_parts(area) if isinstance(part, Polygon)]
         free = max(parts, key=lambda part: part.area, default=Polygon())
-        return cls(piece, outline, holes, openings, (*written_in(free, piece.id), *lines))
+        number = written_in(_beside(free, piece.drawn), piece.id) or written_in(free, piece.id)
+        return cls(piece, outline, holes, openings, (*number, *lines))
+
+
+def _beside(free: Polygon, drawn: Sequence[FloatArray]) -> Polygon:
+    """The largest part of an area that lines leave free."""
+    if not drawn:
+        return free
+    lines = shapely.union_all(shapely.buffer([LineString(line) for line in drawn], CLEAR_OF_MARK_MM))
+    parts = [part for part in shapely.get_parts(free.difference(lines)) if isinstance(part, Polygon)]
+    return max(parts, key=lambda part: part.area, default=Polygon())
 
 
 def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> list[FloatArray]:
@@ -114,8 +124,8 @@ def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> lis
     asked = Polygon(ring)
     area = shapely.buffer(asked, by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
     least = closed_by(asked, by_mm)
-    if farthest(area.buffer(-by_mm, quad_segs=BEAM_CHORDS), least) > SHARP_MM:
-        area = shapely.buffer(asked, by_mm, quad_segs=_quarter_chords(abs(by_mm)))
+    if farthest(area.buffer(-by_mm, quad_segs=beam_chords(by_mm)), least) > SHARP_MM:
+        area = shapely.simplify(shapely.buffer(asked, by_mm, quad_segs=beam_chords(by_mm)), SHARP_MM)
     if not isinstance(area, Polygon) or area.is_empty:
         raise FabricationError("pieces.narrower_than_kerf", piece=piece.id, kerf_mm=kerf_mm)
     area = shapely.orient_polygons(area)
@@ -123,16 +133,17 @@ def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> lis
     return [shapely.get_coordinates(one)[:-1] for one in (area.exterior, *pockets)]
 
 
-def _quarter_chords(radius: float) -> int:
-    """Chords of a quarter circle that stay within ``CORNER_CHORD_MM`` of it."""
-    return math.ceil(0.25 * math.pi / math.acos(1.0 - min(1.0, CORNER_CHORD_MM / radius)))
+def beam_chords(half_mm: float) -> int:
+    """Chords of a quarter of the beam's circle that stay within ``BEAM_CHORD_MM`` of it."""
+    return math.ceil(0.25 * math.pi / math.acos(1.0 - min(1.0, BEAM_CHORD_MM / abs(half_mm)))) if half_mm else 1
 
 
 def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
     """The area that a beam round it leaves: with fillets where it turns inwards."""
     if half_mm == 0.0:
         return area
-    return area.buffer(half_mm, quad_segs=BEAM_CHORDS).buffer(-half_mm, quad_segs=BEAM_CHORDS)
+    chords = beam_chords(half_mm)
+    return area.buffer(half_mm, quad_segs=chords).buffer(-half_mm, quad_segs=chords)
 
 
 def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
@@ -140,18 +151,16 @@ def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
     corners, others = shapely.get_coordinates(one), shapely.get_coordinates(other)
     if not len(corners) or not len(others):
         return math.inf
-    tree = shapely.STRtree(np.asarray(shapely.points(others), dtype=object).reshape(-1))
-    points = np.asarray(shapely.points(corners), dtype=object).reshape(-1)
-    near = tree.query_nearest(points, return_distance=True, all_matches=False)[1]
+    near = np.asarray(cKDTree(others).query(corners)[0])
     # From corner to corner is quick, and nearly always near enough; of the others most lie in the shape.
     far = np.flatnonzero(near > SHARP_MM)
     if len(far):
         shapely.prepare(other)
-        outside = far[~shapely.intersects(other, points[far])]
+        outside = far[~shapely.intersects_xy(other, *corners[far].T)]
         near[far] = 0.0
         if len(outside):
-            sides = shapely.STRtree(_sides(other))
-            near[outside] = sides.query_nearest(points[outside], return_distance=True, all_matches=False)[1]
+            points, sides = shapely.points(corners[outside]), shapely.STRtree(_sides(other))
+            near[outside] = sides.query_nearest(points, return_distance=True, all_matches=False)[1]
     return float(near.max())
 
 
@@ -212,7 +221,14 @@ class CutBed:
         """Everything that a file of this profile draws, in the order of cutting."""
         colour = profile.name_colour
         numbers = () if colour is None else (Stroke(line, False, NAME_LAYER, colour) for line in self._numbers)
-        return (*numbers, *(_stroke(path, profile) for path in self._paths))
+        return (*numbers, *self._artwork(profile), *(_stroke(path, profile) for path in self._paths))
+
+    def _artwork(self, profile: Profile) -> Iterator[Stroke]:
+        """Lines of artwork, piece after piece in the order of their numbers."""
+        colour = profile.artwork_colour
+        for line in () if colour is None else self._drawn:
+            closed = len(line) > 3 and bool(np.all(line[0] == line[-1]))
+            yield Stroke(line[:-1] if closed else line, closed, ARTWORK_LAYER, colour or 0)
 
     @cached_property
     def _paths(self) -> tuple[CutPath, ...]:
@@ -234,12 +250,25 @@ class CutBed:
     @cached_property
     def _numbers(self) -> tuple[FloatArray, ...]:
         """The numbers, each after the nearest."""
-        found = [[_rounded(place.put(line)) for line in cuts.number] for cuts, place in self.placed if cuts.number]
-        if not found:
-            return ()
-        ends = [np.array([lines[0][0], lines[-1][-1]]) @ (1.0, 1j) for lines in found]
-        tour = shortest_tour([Ways(end[:1], end[1:], turnable=False) for end in ends], 0j)
-        return tuple(line for at in tour.order for line in found[at])
+        return _nearest_first(
+            [[_rounded(place.put(line)) for line in cuts.number] for cuts, place in self.placed if cuts.number]
+        )
+
+    @cached_property
+    def _drawn(self) -> tuple[FloatArray, ...]:
+        """The lines of artwork, each after the nearest."""
+        placed = (np.round(place.put(line), DECIMALS) + 0.0 for cuts, place in self.placed for line in cuts.piece.drawn)
+        lines = (line[np.append(True, np.any(line[1:] != line[:-1], axis=1))] for line in placed)
+        return _nearest_first([[line] for line in lines if len(line) > 1])
+
+
+def _nearest_first(found: Sequence[Sequence[FloatArray]]) -> tuple[FloatArray, ...]:
+    """Groups of lines (P, 2), mm, each group after the nearest."""
+    if not found:
+        return ()
+    ends = [np.array([lines[0][0], lines[-1][-1]]) @ (1.0, 1j) for lines in found]
+    tour = shortest_tour([Ways(end[:1], end[1:], turnable=False) for end in ends], 0j)
+    return tuple(line for at in tour.order for line in found[at])
 
 
 def _stroke(path: CutPath, profile: Profile) -> Stroke:

@@ -156,7 +156,7 @@ def _draw(document: Drawing, strokes: Sequence[Stroke], version: str) -> None:
     for stroke in strokes:
         bent = stroke.bulges is not None
         rows = stroke.points if stroke.bulges is None else np.column_stack([stroke.points, stroke.bulges])
-        points = [tuple(float(value) for value in row) for row in rows]
+        points = rows.tolist()
         attributes = {"layer": stroke.layer, "color": stroke.colour}
         if stroke.circle:
             right, left = stroke.points.tolist()

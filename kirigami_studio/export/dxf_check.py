@@ -9,6 +9,7 @@ file is no verdict on its sheet: whether that closes and its material holds is k
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,9 +20,11 @@ import shapely
 from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from kirigami_studio.assembly.nesting import LaidShape
 from kirigami_studio.export.dxf_reading import (
     FARTHEST_MM,
     FLATTEN_MM,
+    MOST_SHEETS,
     SHORTEST_MM,
     DxfContent,
     FilePath,
@@ -29,10 +32,11 @@ from kirigami_studio.export.dxf_reading import (
 )
 from kirigami_studio.export.file_content import MILLIMETRES
 from kirigami_studio.export.file_record import LONGEST_SAID, FileRecord, PieceRecord, piece_record_of, record_of
-from kirigami_studio.export.layer_files import REGISTRATION_LAYER, layer_paths
+from kirigami_studio.export.layer_files import MARK_GAP_MM, REGISTRATION_LAYER, layer_paths
 from kirigami_studio.export.lightburn import read_lightburn
-from kirigami_studio.export.profile import NAME_LAYER
-from kirigami_studio.export.provenance import AROUND, PROGRAM, SLOT_KERF, THROUGH
+from kirigami_studio.export.profile import ARTWORK_LAYER, NAME_LAYER
+from kirigami_studio.export.provenance import AROUND, BOX, PLACE, PROGRAM, SHEETS, SLOT_KERF, THROUGH
+from kirigami_studio.export.sheet_bed import place_of_text
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
 from kirigami_studio.fabricate.copies import alike, copy_numbers
@@ -46,9 +50,11 @@ from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import read_at_most
 from kirigami_studio.foundation.plain_text import plain_line
 
+#: A length of the box round a sheet, mm.
+BOX_NUMBER = re.compile(r"\d{1,4}\.\d{4}", re.ASCII)
 #: Kinds of file that an export has beside cut files.
-NO_CUT_FILES = frozenset(
-    {".pdf", ".png", ".gif", ".html", ".json", ".kiri", ".csv", ".txt", ".3mf", ".stl", ".obj", ".fold", ".xml"}
+NO_CUT_FILES = frozenset({".pdf", ".png", ".gif", ".html", ".json", ".kiri", ".csv", ".txt"}) | frozenset(
+    {".3mf", ".stl", ".obj", ".fold", ".xml", ".inp", ".geo"}
 )
 #: A tab may differ from the width that the file promises by this much (mm).
 TAB_TOLERANCE_MM = 1e-3
@@ -58,6 +64,8 @@ REACH_MM = 1.0
 TOUCH_MM = 1e-3
 #: Machine programs choose the operation by these words in a layer's name (MeerK40t, K40 Whisperer).
 TRAP_WORDS = ("CUT", "ENGRAVE")
+#: What a file says of the numbers of its engraved lines, and their layers.
+ENGRAVED_FACTS = {"ENGRAVED_LINES": NAME_LAYER, "ARTWORK_LINES": ARTWORK_LAYER}
 #: Ends nearer than this (mm) count as the same point.
 SAME_POINT_MM = 1e-4
 #: Closed cuts that are wider than this (mm) are no slots.
@@ -85,6 +93,8 @@ class FileReport:
     #: How the file says it was made; None for files of others, of earlier versions, and for damaged records.
     record: FileRecord | None = None
     of_pieces: PieceRecord | None = None  #: the same of a bed with the pieces of an assembly
+    sheets: tuple[FileReport, ...] = ()  #: of each sheet of a bed with those of several designs
+    place: LaidShape | None = None  #: where such a sheet lies, as the file has it
 
     @property
     def ok(self) -> bool:
@@ -109,6 +119,64 @@ def check_file(path: str | Path, kerf_mm: float | None = None) -> FileReport:
         The file is missing or of another kind, or the kerf makes no sense.
     """
     content = _read(Path(path))
+    return (
+        _of_sheets(Path(path), content, kerf_mm) if SHEETS in content.facts else _judged(Path(path), content, kerf_mm)
+    )
+
+
+def _of_sheets(path: Path, content: DxfContent, kerf_mm: float | None) -> FileReport:
+    """Judge a file with sheets of several designs: each by itself, by its own record."""
+    problems = [*content.problems]
+    said = content.facts[SHEETS]
+    count = int(said) if said.isdecimal() and len(said) <= 4 else 0
+    boxes = [_box_of(content, number) for number in range(1, min(count, MOST_SHEETS) + 1)]
+    if not boxes or any(box is None for box in boxes):
+        problems.append(Problem.error("cut_file.sheets_differ", promised=plain_line(said, LONGEST_SAID)))
+        return _judged(path, replace(content, problems=problems), kerf_mm)
+    part = {"PART": content.facts["PART"]} if "PART" in content.facts else {}
+    shift = MARK_GAP_MM if part or path.is_dir() else 0.0
+    inside = [shapely.box(*box).buffer(SAME_POINT_MM, join_style="mitre") for box in boxes if box is not None]
+    inside = [shapely.transform(area, lambda points: points + shift) for area in inside]
+    paths: list[list[FilePath]] = [[] for _ in boxes]
+    for found in content.paths:
+        line = LineString(found.points)
+        at = next((number for number, area in enumerate(inside) if area.contains(line)), None)
+        if at is None:
+            x, y = found.points[0].tolist()
+            problems.append(Problem.error("cut_file.outside_sheet", (x, y)))
+            at = int(np.argmin([area.distance(line) for area in inside]))
+        paths[at].append(found)
+    reports = []
+    for number, own in enumerate(paths, start=1):
+        start = f"S{number}_"
+        facts = {key.removeprefix(start): text for key, text in content.facts.items() if key.startswith(start)}
+        layers = tuple(name for name in content.layers if any(one.layer == name for one in own))
+        sheet = replace(content, paths=own, facts=facts | part, layers=layers, problems=[])
+        place = place_of_text(facts.get(PLACE, ""), number - 1)
+        reports.append(replace(_judged(path, sheet, kerf_mm), place=place))
+    for report in reports:
+        problems += [problem for problem in report.problems if problem not in problems]
+    points = np.concatenate([found.points for found in content.paths] or [np.zeros((1, 2))])
+    width, height = np.ptp(points, axis=0).tolist()
+    pieces = [one.pieces for one in reports if one.pieces is not None]
+    ligaments = [one.min_ligament_mm for one in reports if one.min_ligament_mm is not None]
+    return FileReport(path, tuple(problems), content.unit, content.layers, sum(one.path_count for one in reports),
+                      sum(one.cut_length_mm for one in reports), sum(one.overlap_mm for one in reports),
+                      (width, height), reports[0].kerf_mm, sum(pieces) if len(pieces) == len(reports) else None,
+                      min(ligaments, default=None), sheets=tuple(reports))  # fmt: skip
+
+
+def _box_of(content: DxfContent, number: int) -> tuple[float, float, float, float] | None:
+    """Left, bottom, right and top, mm, of a sheet of a file by its own record."""
+    words = content.facts.get(f"S{number}_{BOX}", "").split()
+    if len(words) != 4 or not all(BOX_NUMBER.fullmatch(word) for word in words):
+        return None
+    left, bottom, right, top = map(float, words)
+    return left, bottom, right, top
+
+
+def _judged(path: Path, content: DxfContent, kerf_mm: float | None) -> FileReport:
+    """Judge a file with one sheet, its copies, or pieces."""
     kerf, damaged = _kerf(content, kerf_mm)
     if purpose := content.facts.get("PURPOSE"):
         # Whatever else it has is meant for eyes.
@@ -292,17 +360,21 @@ def _without_marks(content: DxfContent) -> DxfContent:
 
 
 def _without_name(content: DxfContent, kerf: float, problems: list[Problem]) -> DxfContent:
-    """The cuts alone of a file that engraves a name in so many lines.
+    """The cuts alone of a file that engraves a name, or artwork, in so many lines.
 
     Of files for single layers one holds all of the name, and the others nothing of it.
     """
-    promised = content.facts.get("ENGRAVED_LINES")
-    if promised is None:
+    promised = {layer: content.facts.get(fact) for fact, layer in ENGRAVED_FACTS.items()}
+    if not any(promised.values()):
         return content
-    names = [path for path in content.paths if path.layer == NAME_LAYER]
-    cuts = [path for path in content.paths if path.layer != NAME_LAYER]
-    if f"{len(names)}" != promised and (names or "PART" not in content.facts):
-        problems.append(Problem.error("cut_file.name_differs", promised=promised, layer=NAME_LAYER, count=len(names)))
+    engraved = frozenset(layer for layer, count in promised.items() if count)
+    cuts = [path for path in content.paths if path.layer not in engraved]
+    for layer in sorted(engraved):
+        count = sum(path.layer == layer for path in content.paths)
+        if f"{count}" != promised[layer] and (count or "PART" not in content.facts):
+            problems.append(Problem.error("cut_file.name_differs", promised=promised[layer], layer=layer, count=count))
+    # Lines of artwork may end at the edge of a piece.
+    names = [path for path in content.paths if path.layer == NAME_LAYER and NAME_LAYER in engraved]
     if names and cuts:
         clear = nearest_cut([path.points for path in names], [path.points for path in cuts])
         if clear.distance_mm < kerf:

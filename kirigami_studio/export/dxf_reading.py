@@ -53,10 +53,12 @@ RECORDED_FACTS = (
     "KIRIGAMI_STUDIO", "CONSTRUCTION", "DESIGN", "WIDTH_MM", "CONNECTOR_MM", "LEAST_CONNECTOR_MM", "KERF_MM",
     "SLOT_KERF_MM", "STYLE", "ORDER", "PROFILE", "MATERIAL", "MACHINE", "LINES", "TRIMMED", "TABS", "TABS_ASKED",
     "TAB_MM", "JOINS", "HOLES",
-    "PART", "COPIES", "COPIES_ASKED", "COPY_GAP_MM", "NAME", "ENGRAVED_LINES", "VERDICT", "PURPOSE",
-    "LAYER", "BED", "PIECES", "PIN_MM", "EAR_MM", "CLEARANCE_MM", "FASTENER",
+    "PART", "COPIES", "COPIES_ASKED", "COPY_GAP_MM", "NAME", "ENGRAVED_LINES", "ARTWORK_LINES", "VERDICT", "PURPOSE",
+    "LAYER", "BED", "SHEETS", "BOX_MM", "PLACE", "PIECES", "PIN_MM", "EAR_MM", "CLEARANCE_MM", "FASTENER",
 )  # fmt: skip
 RECORDED_LISTS, MOST_PIECES = ("HINGE_MM", "REMOVED"), 400
+#: Sheets of several designs in one file whose records are read.
+MOST_SHEETS = 1000
 #: What ezdxf raises on damaged files, depending on where the damage is.
 PARSER_FAULTS = (
     DXFError,
@@ -266,12 +268,14 @@ def _unit_factor(document: Drawing, content: DxfContent) -> float:
 def _facts(document: Drawing) -> dict[str, str]:
     facts = {str(key): str(value) for key, value in document.header.custom_vars}
     record = document.ezdxf_metadata()
-    for key in RECORDED_FACTS:
-        if key not in facts and key in record:
-            facts[key] = str(record[key])
-    for name in RECORDED_LISTS:
-        for piece in takewhile(record.__contains__, (f"{name}_{number}" for number in range(MOST_PIECES))):
-            facts.setdefault(piece, str(record[piece]))
+    sheets = (f"S{number}_" for number in range(1, MOST_SHEETS + 1))
+    for start in ("", *takewhile(lambda one: f"{one}DESIGN" in record, sheets)):
+        for key in (f"{start}{name}" for name in RECORDED_FACTS):
+            if key not in facts and key in record:
+                facts[key] = str(record[key])
+        for name in (f"{start}{name}" for name in RECORDED_LISTS):
+            for piece in takewhile(record.__contains__, (f"{name}_{number}" for number in range(MOST_PIECES))):
+                facts.setdefault(piece, str(record[piece]))
     return facts
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from kirigami_studio.export.strokes import Stroke
+from kirigami_studio.export.strokes import Stroke, total_length
 
 #: Code of millimetres in ``$INSUNITS``.
 MILLIMETRES = 4
@@ -27,7 +27,7 @@ class FileContent:
     @property
     def length(self) -> float:
         """Length of all strokes, mm."""
-        return sum(stroke.length for stroke in self.strokes)
+        return total_length(self.strokes)
 
 
 def one_drawing(files: Sequence[FileContent]) -> FileContent:
@@ -45,14 +45,12 @@ def one_drawing(files: Sequence[FileContent]) -> FileContent:
 
 def largest_shift(found: Sequence[Stroke], meant: Sequence[Stroke]) -> float:
     """Largest distance (mm) of a point from where it was meant; infinite when the points do not pair up."""
-    worst = 0.0
-    if len(found) != len(meant):
+    if [stroke.points.shape for stroke in found] != [stroke.points.shape for stroke in meant]:
         return float("inf")
-    for one, other in zip(found, meant, strict=True):
-        if one.points.shape != other.points.shape:
-            return float("inf")
-        worst = max(worst, float(np.linalg.norm(one.points - other.points, axis=1).max()))
-    return worst
+    if not found:
+        return 0.0
+    places, wanted = (np.concatenate([stroke.points for stroke in strokes]) for strokes in (found, meant))
+    return float(np.linalg.norm(places - wanted, axis=1).max())
 
 
 def bent_otherwise(found: Sequence[Stroke], meant: Sequence[Stroke], tolerance: float) -> int:
@@ -60,6 +58,7 @@ def bent_otherwise(found: Sequence[Stroke], meant: Sequence[Stroke], tolerance: 
     return sum(
         not np.allclose(_bulges(one), _bulges(other), rtol=0.0, atol=tolerance)
         for one, other in zip(found, meant, strict=True)
+        if one.bulges is not None or other.bulges is not None
     )
 
 

@@ -15,14 +15,15 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 
-from kirigami_studio.export.profile import NAME_LAYER, find_profile
+from kirigami_studio.export.profile import ARTWORK_LAYER, ENGRAVED_LAYERS, NAME_LAYER, find_profile
 from kirigami_studio.export.provenance import facts_of
-from kirigami_studio.export.strokes import Stroke, file_strokes, layer_colours, name_strokes
+from kirigami_studio.export.strokes import Stroke, file_strokes, layer_colours, name_strokes, total_length
 from kirigami_studio.fabricate.cut_path import arc_of
 from kirigami_studio.fabricate.cut_plan import CutPath, CutPlan, Layer
 from kirigami_studio.fabricate.findings import Note
@@ -43,9 +44,10 @@ PALETTE_NUMBER = {
 }
 #: The number of holes in a sheet with slits, whose number they have otherwise: cyan.
 HOLES_BESIDE_SLITS = 6
-#: Number of the name in the palette: black.
-NAME_NUMBER = 0
-#: Share of the material's power that the name is engraved with.
+#: Numbers of the name and of artwork in the palette: black and orange.
+NAME_NUMBER, ARTWORK_NUMBER = 0, 5
+ENGRAVED_NUMBER = {NAME_LAYER: NAME_NUMBER, ARTWORK_LAYER: ARTWORK_NUMBER}
+#: Share of the material's power that both are engraved with.
 NAME_POWER = 0.2
 #: The first tool layer, which LightBurn shows and never cuts.
 TOOL_LAYER = 30
@@ -58,6 +60,8 @@ SAME_LENGTH = 5e-4
 CHORDS = 64
 #: Chords of a curve where the cuts of a project are checked.
 CURVE_CHORDS = 24
+#: Files that were read last are kept, by their bytes.
+KEPT_FILES = 4
 #: x and y of the four control points of a cubic Bezier curve, mm.
 Curve = tuple[float, ...]
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
@@ -91,7 +95,9 @@ def write_project(content: bytes, strokes: Sequence[Stroke], path: Path) -> None
     ExportError
         As :func:`write_lightburn`.
     """
-    meant = {name: sum(stroke.length for stroke in strokes if stroke.layer == name) for name in layer_colours(strokes)}
+    meant = {
+        name: total_length([stroke for stroke in strokes if stroke.layer == name]) for name in layer_colours(strokes)
+    }
 
     def verify(written: Path) -> None:
         found = layer_lengths(written)
@@ -107,7 +113,7 @@ def write_project(content: bytes, strokes: Sequence[Stroke], path: Path) -> None
 def lightburn_bytes(plan: CutPlan, markers: bool = False) -> bytes:
     """Return the project's XML; ``markers`` as for :func:`write_lightburn`."""
     names = name_strokes(plan, find_profile("any"))
-    root = _project(plan.material, plan.machine, plan.layers, bool(names))
+    root = _project(plan.material, plan.machine, plan.layers, [NAME_LAYER] if names else [])
     if markers:
         _add_setting(root, "Tool", TOOL_LAYER, "CONNECTORS", len(plan.layers) + (1 if names else 0), {})
     for stroke in names:
@@ -125,17 +131,18 @@ def strokes_lightburn(
     strokes: Sequence[Stroke], material: Material, machine: Machine, facts: Mapping[str, str]
 ) -> bytes:
     """Return the project of any strokes; their layers have the names of :class:`Layer`."""
-    names = [stroke for stroke in strokes if stroke.layer == NAME_LAYER]
-    cuts = [(stroke, Layer(stroke.layer)) for stroke in strokes if stroke.layer != NAME_LAYER]
+    engraved = [stroke for stroke in strokes if stroke.layer in ENGRAVED_LAYERS]
+    cuts = [(stroke, Layer(stroke.layer)) for stroke in strokes if stroke.layer not in ENGRAVED_LAYERS]
     layers = tuple(dict.fromkeys(layer for _, layer in cuts))
-    palette, root = palette_for(layers), _project(material, machine, layers, bool(names))
+    named = list(dict.fromkeys(stroke.layer for stroke in engraved))
+    palette, root = palette_for(layers), _project(material, machine, layers, named)
     numbers = [
-        *((stroke, NAME_NUMBER) for stroke in names),
+        *((stroke, ENGRAVED_NUMBER[stroke.layer]) for stroke in engraved),
         *((stroke, palette[layer]) for stroke, layer in cuts),
     ]
     for stroke, number in numbers:
         _add_path(root, stroke, number)
-    return _with_notes(root, material, facts, (), bool(names))
+    return _with_notes(root, material, facts, (), bool(engraved))
 
 
 def palette_for(layers: Sequence[Layer]) -> dict[Layer, int]:
@@ -143,7 +150,9 @@ def palette_for(layers: Sequence[Layer]) -> dict[Layer, int]:
     return PALETTE_NUMBER | ({Layer.HOLES: HOLES_BESIDE_SLITS} if Layer.SLITS in layers else {})
 
 
-def _project(material: Material, machine: Machine, layers: Sequence[Layer], named: bool) -> ElementTree.Element:
+def _project(
+    material: Material, machine: Machine, layers: Sequence[Layer], engraved: Sequence[str]
+) -> ElementTree.Element:
     """A project with its settings and nothing drawn."""
     # Mirrored in y means that y counts upwards.
     root = ElementTree.Element(
@@ -158,12 +167,12 @@ def _project(material: Material, machine: Machine, layers: Sequence[Layer], name
         "numPasses": f"{material.passes}",
         "kerf": "0",
     }
-    if named:
-        faint = f"{NAME_POWER * material.power_percent:g}"
-        light = work | {"minPower": faint, "maxPower": faint, "numPasses": "1"}
-        _add_setting(root, "Cut", NAME_NUMBER, NAME_LAYER, 0, light)
+    faint = f"{NAME_POWER * material.power_percent:g}"
+    light = work | {"minPower": faint, "maxPower": faint, "numPasses": "1"}
+    for priority, name in enumerate(engraved):
+        _add_setting(root, "Cut", ENGRAVED_NUMBER[name], name, priority, light)
     palette = palette_for(layers)
-    for priority, layer in enumerate(layers, start=1 if named else 0):
+    for priority, layer in enumerate(layers, start=len(engraved)):
         _add_setting(root, "Cut", palette[layer], layer.value, priority, work)
     return root
 
@@ -327,22 +336,30 @@ def read_lightburn(content: bytes, path: Path) -> ProjectContent:
         No readable project, a shape on a layer without settings, or one that is no path.
     """
     try:
-        root = ElementTree.fromstring(content)
-        names = {_value(one, "index"): _value(one, "name") for one in root.findall("CutSetting[@type='Cut']")}
-        tools = {_value(one, "index") for one in root.findall("CutSetting[@type='Tool']")}
-        if root.tag != "LightBurnProject" or root.find(".//Shape//Shape") is not None:
-            raise ValueError("it is no project of plain paths")
-        shapes = [shape for shape in root.findall("Shape") if shape.get("CutIndex") not in tools]
-        paths = tuple(
-            ProjectPath(names[str(shape.get("CutIndex"))], np.array(_control_points(shape)).reshape(-1, 4, 2))
-            for shape in shapes
-        )
-        if not all(len(one.curves) and np.all(np.isfinite(one.curves)) for one in paths):
-            raise ValueError("a path has no length")
-        notes = root.find("Notes")
-        lines = "" if notes is None else str(notes.get("Notes"))
+        return _content(content)
     except (ElementTree.ParseError, KeyError, ValueError, IndexError, LookupError) as error:
         raise ExportError("lightburn.not_readable", path=path, reason=str(error)) from error
+
+
+@lru_cache(maxsize=KEPT_FILES)
+def _content(content: bytes) -> ProjectContent:
+    """Read a project; one that was read back is mostly verified next."""
+    root = ElementTree.fromstring(content)
+    names = {_value(one, "index"): _value(one, "name") for one in root.findall("CutSetting[@type='Cut']")}
+    tools = {_value(one, "index") for one in root.findall("CutSetting[@type='Tool']")}
+    if root.tag != "LightBurnProject" or root.find(".//Shape//Shape") is not None:
+        raise ValueError("it is no project of plain paths")
+    shapes = [shape for shape in root.findall("Shape") if shape.get("CutIndex") not in tools]
+    paths = tuple(
+        ProjectPath(names[str(shape.get("CutIndex"))], np.array(_control_points(shape)).reshape(-1, 4, 2))
+        for shape in shapes
+    )
+    if not all(len(one.curves) and np.all(np.isfinite(one.curves)) for one in paths):
+        raise ValueError("a path has no length")
+    for one in paths:
+        one.curves.setflags(write=False)
+    notes = root.find("Notes")
+    lines = "" if notes is None else str(notes.get("Notes"))
     facts: dict[str, str] = {}
     for line in lines.splitlines():
         if found := _FACT.fullmatch(line):
@@ -391,8 +408,10 @@ def _circle_curves(shape: ElementTree.Element) -> list[Curve]:
 
 
 def _length(curves: FloatArray) -> float:
-    """Length (mm) of cubic Bezier curves (C, 4, 2), each measured along its chords."""
-    return float(np.linalg.norm(np.diff(_weights(CHORDS), axis=0) @ curves, axis=2).sum())
+    """Length (mm) of cubic Bezier curves (C, 4, 2), each measured along its chords; straight ones have one."""
+    bent = np.any(curves[:, 1] != curves[:, 0], axis=1) | np.any(curves[:, 2] != curves[:, 3], axis=1)
+    straight = np.linalg.norm(curves[~bent, 3] - curves[~bent, 0], axis=1).sum()
+    return float(straight + np.linalg.norm(np.diff(_weights(CHORDS), axis=0) @ curves[bent], axis=2).sum())
 
 
 def _weights(chords: int) -> FloatArray:

@@ -15,14 +15,14 @@ import numpy as np
 
 from kirigami_studio.export.file_content import MILLIMETRES, FileContent
 from kirigami_studio.export.lightburn import ProjectPath, read_lightburn
-from kirigami_studio.export.profile import BLUE, CYAN, GREEN, MAGENTA, RED, WHITE
+from kirigami_studio.export.profile import BLUE, CYAN, GREEN, MAGENTA, ORANGE, RED, WHITE
 from kirigami_studio.export.strokes import Stroke, extent
 from kirigami_studio.export.svg_reading import LARGEST_FILE
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import read_at_most
 
 #: AutoCAD colours of the numbers of LightBurn's palette that cut files use.
-COLOURS = {0: WHITE, 1: BLUE, 2: RED, 3: GREEN, 6: CYAN, 7: MAGENTA}
+COLOURS = {0: WHITE, 1: BLUE, 2: RED, 3: GREEN, 5: ORANGE, 6: CYAN, 7: MAGENTA}
 #: Ends of the quarters of a circle may differ by this (mm) from one radius: they are rounded in files.
 SAME_RADIUS_MM = 1e-6
 _SETTING = re.compile(r"<CutSetting\b([^>]*)>(.*?)</CutSetting>", re.DOTALL)

@@ -8,7 +8,7 @@ lines of each layer.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -36,8 +36,10 @@ from kirigami_studio.export.pdf_pages import (
 from kirigami_studio.export.picture import Colour
 from kirigami_studio.export.profile import NAME_LAYER, find_profile
 from kirigami_studio.export.provenance import facts_of
+from kirigami_studio.export.sheet_bed import SheetBed
 from kirigami_studio.export.strokes import name_strokes
-from kirigami_studio.fabricate.cut_plan import CutPlan
+from kirigami_studio.fabricate.cut_path import flattened
+from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
@@ -46,7 +48,8 @@ from kirigami_studio.foundation.files import write_atomically
 SAME_LENGTH = 1e-5
 #: What rounding may add to a length at every corner (mm): a PDF's coordinates have six decimals.
 ROUNDING_MM = 1e-6
-Line = tuple[FloatArray, bool, Colour]
+#: Points (P, 2), mm, whether they are closed, and the name of their layer.
+Line = tuple[FloatArray, bool, str]
 _STREAM = re.compile(rb"stream\r?\n(.*?)endstream", re.DOTALL)
 _TEXT = re.compile(rb"BT.*?ET", re.DOTALL)
 
@@ -64,39 +67,98 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = Paper.NONE) -> None:
     ExportError
         Unknown paper, too many pages, an unwritable place, or a file that did not read back.
     """
-    names = [(stroke.points, False, picture.NAME_COLOUR) for stroke in name_strokes(plan, find_profile("any"))]
-    cuts = [(cut.flattened, cut.closed, picture.LAYER_COLOUR[cut.layer]) for cut in plan.copies.of(plan.paths)]
-    lines = [*names, *cuts]
-    tiling = one_page(plan) if find_paper(paper) is None else tile(plan.copies.spread_mm, paper)
-    content = _pdf_bytes(plan, lines, tiling)
-    write_atomically(Path(path), content, lambda written: _verify(written, plan, tiling))
+    facts = facts_of(plan, find_profile("any"))
+    _write(_plan_lines(plan), plan.copies.spread_mm, Path(path), paper, plan.design_hash, facts, _about(plan))
 
 
-def page_size_mm(plan: CutPlan) -> tuple[float, float]:
+def pages_of(size: tuple[float, float], paper: str) -> Tiling:
+    """Lay a drawing (width, height; mm) over pages of a paper, or for "none" on one page as large as it.
+
+    Raises
+    ------
+    ExportError
+        Unknown paper, or too many pages.
+    """
+    return one_page(size) if find_paper(paper) is None else tile(size, paper)
+
+
+def draw_plan(canvas: Any, plan: CutPlan, tiling: Tiling) -> None:
+    """Draw all pages of a plan at 1:1 on a canvas of reportlab, or on one with the same methods."""
+    _draw(canvas, _plan_lines(plan), tiling, plan.copies.spread_mm, _about(plan))
+
+
+def _plan_lines(plan: CutPlan) -> list[Line]:
+    names = [(stroke.points, False, NAME_LAYER) for stroke in name_strokes(plan, find_profile("any"))]
+    return [*names, *((cut.flattened, cut.closed, cut.layer.value) for cut in plan.copies.of(plan.paths))]
+
+
+def _about(plan: CutPlan) -> str:
+    about = f"Sheet {plan.size_mm[0]:.1f} x {plan.size_mm[1]:.1f} mm, connectors {plan.connector_mm:g} mm"
+    return about + (f", {len(plan.copies)} copies" if len(plan.copies) > 1 else "")
+
+
+def write_bed_pdf(bed: SheetBed, path: str | Path, paper: str = Paper.NONE, verdict: str = "") -> None:
+    """Write sheets of several designs at 1:1, where their bed has them; as :func:`write_pdf`."""
+    profile = find_profile("any")
+    lines = []
+    for stroke in bed.strokes(profile):
+        points = stroke.points
+        if stroke.bulges is not None:
+            points = flattened(points, stroke.bulges, stroke.closed)
+        lines.append((points, stroke.closed, stroke.layer))
+    about = f"{len(bed.sheets)} sheets, connectors {bed.sheets[0].plan.connector_mm:g} mm"
+    title = " ".join(sheet.plan.design_hash for sheet in bed.sheets)
+    _write(lines, bed.size_mm, Path(path), paper, title, bed.facts(profile, verdict), about)
+
+
+def _write(
+    lines: Sequence[Line],
+    size: tuple[float, float],
+    path: Path,
+    paper: str,
+    title: str,
+    facts: Mapping[str, str],
+    about: str,
+) -> None:
+    """Write lines of a drawing (width, height; mm) and read them back."""
+    tiling = pages_of(size, paper)
+    content = _pdf_bytes(lines, tiling, size, title, facts, about)
+    write_atomically(path, content, lambda written: _verify(written, lines, tiling))
+
+
+def page_size_mm(size: tuple[float, float]) -> tuple[float, float]:
     """Width and height of the one large page: everything that is cut, a margin, and a footer with the ruler."""
-    width, height = plan.copies.spread_mm
+    width, height = size
     return max(width, RULER_MM) + 2.0 * MARGIN_MM, height + 2.0 * MARGIN_MM + FOOTER_MM
 
 
-def one_page(plan: CutPlan) -> Tiling:
-    """One page as large as the sheet."""
+def one_page(size: tuple[float, float]) -> Tiling:
+    """One page as large as the drawing (width, height; mm)."""
     everything = (-np.inf, -np.inf, np.inf, np.inf)
-    return Tiling(page_size_mm(plan), 1, 1, (Tile(0, 0, (0.0, 0.0, *plan.copies.spread_mm), everything),))
+    return Tiling(page_size_mm(size), 1, 1, (Tile(0, 0, (0.0, 0.0, *size), everything),))
 
 
-def _pdf_bytes(plan: CutPlan, lines: Sequence[Line], tiling: Tiling) -> bytes:
+def _draw(canvas: Any, lines: Sequence[Line], tiling: Tiling, size: tuple[float, float], about: str) -> None:
+    whole = len(tiling.tiles) == 1
+    canvas.setLineCap(1)
+    draw_pages(canvas, tiling, size, about, lambda part: _draw_lines(canvas, lines, part, whole=whole))
+
+
+def _colour(layer: str) -> Colour:
+    return picture.NAME_COLOUR if layer == NAME_LAYER else picture.LAYER_COLOUR[Layer(layer)]
+
+
+def _pdf_bytes(
+    lines: Sequence[Line], tiling: Tiling, size: tuple[float, float], title: str, facts: Mapping[str, str], about: str
+) -> bytes:
     stream = BytesIO()
     # reportlab carries no types; invariant: the same plan gives the same bytes.
     make_canvas: Any = Canvas
     canvas = make_canvas(stream, pagesize=tuple(side * mm for side in tiling.page), invariant=1, pageCompression=0)
-    canvas.setTitle(f"Kirigami cut plan {plan.design_hash}")
+    canvas.setTitle(f"Kirigami cut plan {title}")
     canvas.setCreator(f"Kirigami Studio {__version__}")
-    canvas.setSubject("; ".join(f"{name} {text}" for name, text in facts_of(plan, find_profile("any")).items()))
-    canvas.setLineCap(1)
-    about = f"Sheet {plan.size_mm[0]:.1f} x {plan.size_mm[1]:.1f} mm, connectors {plan.connector_mm:g} mm"
-    about += f", {len(plan.copies)} copies" if len(plan.copies) > 1 else ""
-    whole = len(tiling.tiles) == 1
-    draw_pages(canvas, tiling, plan.copies.spread_mm, about, lambda part: _draw_lines(canvas, lines, part, whole=whole))
+    canvas.setSubject("; ".join(f"{name} {text}" for name, text in facts.items()))
+    _draw(canvas, lines, tiling, size, about)
     canvas.save()
     content: bytes = stream.getvalue()
     return content
@@ -107,7 +169,8 @@ def _draw_lines(canvas: Any, lines: Sequence[Line], part: Tile, whole: bool) -> 
     canvas.setLineWidth(LINE_MM * mm)
     window, shift = shapely.box(*part.window), to_page(part)
     current: Colour | None = None
-    for points, closed, colour in lines:
+    for points, closed, layer in lines:
+        colour = _colour(layer)
         if colour != current:
             stroke_colour(canvas, colour)
             current = colour
@@ -128,22 +191,17 @@ def _chord_length(points: FloatArray) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _verify(path: Path, plan: CutPlan, tiling: Tiling) -> None:
-    """Read the pages back: their size, and that their cells together hold every cut once."""
+def _verify(path: Path, lines: Sequence[Line], tiling: Tiling) -> None:
+    """Read the pages back: their size, and that their cells together hold every line once."""
     pages = read_pages(path)
     check_pages([page.size_mm for page in pages], tiling.page, len(tiling.tiles))
-    meant = {
-        layer.value: (picture.LAYER_COLOUR[layer], [cut.travelled for cut in plan.on_layer(layer)])
-        for layer in plan.layers
-    }
-    names = () if plan.engraving is None else plan.engraving.lines
-    for name, (colour, lines) in (meant | {NAME_LAYER: (picture.NAME_COLOUR, names)}).items():
+    for layer in dict.fromkeys(name for _, _, name in lines):
+        drawn = [np.concatenate([p, p[:1]]) if closed else p for p, closed, name in lines if name == layer]
         shown = zip(pages[-len(tiling.tiles) :], tiling.tiles, strict=True)
-        found = sum(length_in_cell(page, part, colour) for page, part in shown)
-        length = len(plan.copies) * sum(_chord_length(line) for line in lines)
-        corners = len(plan.copies) * sum(len(line) for line in lines)
+        found = sum(length_in_cell(page, part, _colour(layer)) for page, part in shown)
+        length, corners = sum(map(_chord_length, drawn)), sum(map(len, drawn))
         if abs(found - length) > SAME_LENGTH * length + ROUNDING_MM * corners:
-            raise ExportError("pdf.other_length", found_mm=found, planned_mm=length, layer=name)
+            raise ExportError("pdf.other_length", found_mm=found, planned_mm=length, layer=layer)
 
 
 def length_in_cell(page: Page, part: Tile, colour: Colour) -> float:
@@ -171,8 +229,8 @@ class Page:
     lines: tuple[PageLine, ...]
 
 
-def read_pages(path: Path) -> list[Page]:
-    """Return all pages in order.
+def read_pages(path: Path, last: int | None = None) -> list[Page]:
+    """Return all pages in order; the lines of all, or of so many at the end.
 
     Raises
     ------
@@ -187,9 +245,10 @@ def read_pages(path: Path) -> list[Page]:
     if len(boxes) != len(streams):
         raise ExportError("pdf.pages_without_drawing", path=path, pages=len(boxes), drawings=len(streams))
     try:
+        first = 0 if last is None else len(boxes) - last
         return [
-            Page(box, tuple(_lines(_TEXT.sub(b"", stream).decode("latin-1"))))
-            for box, stream in zip(boxes, streams, strict=True)
+            Page(box, tuple(_lines(_TEXT.sub(b"", stream).decode("latin-1"))) if number >= first else ())
+            for number, (box, stream) in enumerate(zip(boxes, streams, strict=True))
         ]
     except (ValueError, IndexError) as error:
         raise ExportError("pdf.drawing_not_readable", path=path, reason=str(error)) from error

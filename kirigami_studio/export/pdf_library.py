@@ -17,8 +17,9 @@ try:
     from reportlab.lib.units import mm
     from reportlab.lib.utils import ImageReader
     from reportlab.pdfgen.canvas import Canvas
+    from reportlab.pdfgen.pathobject import PDFPathObject
 finally:
     for name in _placed:
         del sys.modules[name]
 
-__all__ = ["Canvas", "ImageReader", "mm"]
+__all__ = ["Canvas", "ImageReader", "PDFPathObject", "mm"]

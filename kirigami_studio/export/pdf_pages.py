@@ -14,7 +14,7 @@ import numpy as np
 
 from kirigami_studio.export import picture
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, Size, Tile, Tiling
-from kirigami_studio.export.pdf_library import mm
+from kirigami_studio.export.pdf_library import PDFPathObject, mm
 from kirigami_studio.export.picture import Colour
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
@@ -72,16 +72,15 @@ def to_page(part: Tile) -> FloatArray:
     return np.array([MARGIN_MM - part.window[0], MARGIN_MM + FOOTER_MM - part.window[1]])
 
 
+def path_of(points: FloatArray, closed: bool) -> PDFPathObject:
+    """A path along a line (P, 2), mm on the page."""
+    first, *rest = [f"{x:.5f} {y:.5f}" for x, y in (points * mm).tolist()]
+    return PDFPathObject(["n", first, "m", *(f"{place} l" for place in rest), *(["h"] if closed else [])])
+
+
 def draw_line(canvas: Any, points: FloatArray, closed: bool) -> None:
     """Draw a line (P, 2), mm on the page."""
-    path = canvas.beginPath()
-    (x, y), *rest = points.tolist()
-    path.moveTo(x * mm, y * mm)
-    for x, y in rest:
-        path.lineTo(x * mm, y * mm)
-    if closed:
-        path.close()
-    canvas.drawPath(path)
+    canvas.drawPath(path_of(points, closed))
 
 
 def stroke_colour(canvas: Any, colour: Colour) -> None:

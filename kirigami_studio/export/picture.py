@@ -154,6 +154,34 @@ def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
     return draw_polygons(panels, frame, job.target, edges)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedLayout:
+    """The layout of a part in its place among those of others."""
+
+    job: ExportJob
+    mm: float  #: for one unit of the target's frame
+    shift: FloatArray  #: (2,), mm; of the target's centroid
+
+    def put(self, points: FloatArray) -> FloatArray:
+        """Points (P, 2) of the target's frame, mm."""
+        return points * self.mm + self.shift
+
+
+def write_parts_png(parts: Sequence[PlacedLayout], path: str | Path, longest: int = LONGEST_SIDE) -> None:
+    """Write the layouts of all parts at their target angles, each in its place.
+
+    Raises
+    ------
+    ExportError
+        The place cannot be written, or the file did not read back.
+    """
+    panels = [part.put(panel) for part in parts for panel in drawn_panels(part.job, part.job.shown_phi)[0]]
+    targets = [[part.put(ring) for ring in as_rings(part.job.target)] for part in parts]
+    frame = PictureFrame.around([*panels, *(ring for rings in targets for ring in rings)], longest)
+    facts = origin_facts(parts[0].job.provenance)
+    write_image(_drawn(panels, frame, targets, None), Path(path), facts, optimize=True)
+
+
 def drawn_panels(job: ExportJob, phi: float) -> tuple[list[FloatArray], list[FloatArray] | None]:
     """The panels at an angle (radians), and the lines at their edges; None for all."""
     if job.motion is None:
@@ -172,13 +200,24 @@ def draw_polygons(
 
     ``edges`` are lines (L, 2) that are drawn over the panels instead of their outlines.
     """
+    return _drawn(polygons, frame, [as_rings(target)], edges)
+
+
+def _drawn(
+    polygons: Sequence[FloatArray],
+    frame: PictureFrame,
+    targets: Sequence[Sequence[FloatArray]],
+    edges: Sequence[FloatArray] | None,
+) -> Image.Image:
+    """Draw panels over targets, each the rings (L, 2) of one; as :func:`draw_polygons`."""
     factor = SUPERSAMPLING
     size = (frame.pixels[0] * factor, frame.pixels[1] * factor)
     image = Image.new("RGB", size, PAPER)
     draw = ImageDraw.Draw(image)
-    loops = [frame.pixel(ring, factor) for ring in as_rings(target)]
-    for loop in loops:
-        draw.polygon(loop, fill=TARGET_FILL if loop is loops[0] else PAPER)
+    shapes = [[frame.pixel(ring, factor) for ring in rings] for rings in targets]
+    for loops in shapes:
+        for loop in loops:
+            draw.polygon(loop, fill=TARGET_FILL if loop is loops[0] else PAPER)
     for polygon in polygons:
         corners = frame.pixel(polygon, factor)
         draw.polygon(corners, fill=PANEL)
@@ -186,7 +225,7 @@ def draw_polygons(
             draw.line([*corners, corners[0]], fill=PANEL_EDGE, width=factor, joint="curve")
     for edge in () if edges is None else edges:
         draw.line(frame.pixel(edge, factor), fill=PANEL_EDGE, width=factor, joint="curve")
-    for loop in loops:
+    for loop in (loop for loops in shapes for loop in loops):
         draw.line([*loop, loop[0]], fill=TARGET_EDGE, width=2 * factor, joint="curve")
     return image.resize(frame.pixels, Image.Resampling.BOX)
 
@@ -208,7 +247,10 @@ def draw_pieces(pieces: PosedPieces, phi: float, frame: PictureFrame, target: Sh
     for loop in loops:
         ImageDraw.Draw(image).polygon(loop, fill=TARGET_FILL if loop is loops[0] else PAPER)
     fall = max(pieces.shadow * frame.scale, 1.0) * factor
-    shown = [[frame.pixel(ring, factor) for ring in rings] for rings in pieces.rings(phi)]
+    shown, drawn = (
+        [[frame.pixel(line, factor) for line in lines] for lines in found]
+        for found in (pieces.rings(phi), pieces.drawn(phi))
+    )
     for place, layer in enumerate(pieces.layers):
         mask = Image.new("L", size, 0)
         draw = ImageDraw.Draw(mask)
@@ -219,6 +261,8 @@ def draw_pieces(pieces: PosedPieces, phi: float, frame: PictureFrame, target: Sh
         draw = ImageDraw.Draw(image)
         for ring in (ring for number in layer for ring in shown[number]):
             draw.line([*ring, ring[0]], fill=look.line, width=factor)
+        for line in (line for number in layer for line in drawn[number]):
+            draw.line(line, fill=look.number, width=factor, joint="curve")
     heads = frame.pixel(pieces.heads(phi), factor)
     radius = max(0.5 * pieces.head_mm / pieces.mm_per_world * frame.scale, 0.7) * factor
     if heads:

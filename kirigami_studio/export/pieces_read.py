@@ -21,8 +21,8 @@ from shapely.geometry import Polygon
 from kirigami_studio.assembly.nesting import LaidShape
 from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import RoundHole
-from kirigami_studio.export.cut_bed import BEAM_CHORDS, CutBed, PieceCuts, closed_by, farthest
-from kirigami_studio.export.profile import NAME_LAYER
+from kirigami_studio.export.cut_bed import CutBed, PieceCuts, beam_chords, closed_by, farthest
+from kirigami_studio.export.profile import ENGRAVED_LAYERS, NAME_LAYER
 from kirigami_studio.export.strokes import Stroke
 from kirigami_studio.export.verification import Finding
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
@@ -109,22 +109,21 @@ def found_pieces(
     pieces : list of FoundPiece
         In the order of the bed; none where pieces are missing.
     """
-    cuts = [stroke for stroke in strokes if stroke.layer != NAME_LAYER]
+    cuts = [stroke for stroke in strokes if stroke.layer not in ENGRAVED_LAYERS]
     if not all(stroke.closed and len(stroke.points) > 1 for stroke in cuts):
         return [Finding.judged(False, "verify.pieces_open")], []
-    rings = np.array([Polygon(stroke.travelled(MEASURED_CHORD_MM)) for stroke in cuts], dtype=object)
+    rings = np.array([Polygon(stroke.travelled()) for stroke in cuts], dtype=object)
     outer, inner = _nesting(rings)
     numbers = _matched(rings[outer], bed)
     if numbers is None:
         counts = {"count": len(outer), "planned": len(bed.pieces)}
         return [Finding.judged(False, "verify.pieces_lost", **counts)], []
     finished = {} if known is None else known.finished
-    ways = [shapely.get_coordinates(ring) for ring in rings]
     pieces = []
     for (piece, place), number in zip(bed.placed, numbers, strict=True):
         at = int(outer[number])
         holes, openings = _holes_and_openings([cuts[one] for one in inner[at]], piece, place, kerf_mm)
-        cut = (ways[at], *(ways[inner[at][one]] for one in openings))
+        cut = [cuts[one].travelled(MEASURED_CHORD_MM) for one in (at, *(inner[at][one] for one in openings))]
         key = (bed.name, piece.piece.id, *((way / SAME_MM).round().astype(np.int64).tobytes() for way in cut))
         if key not in finished:
             finished[key] = _finished(piece, [place.taken(way) for way in cut], kerf_mm)
@@ -178,11 +177,10 @@ def _holes_and_openings(
         centre = points.mean(axis=0)
         radius = np.linalg.norm(points - centre, axis=1)
         # Corners of a square lie on a circle, too.
-        filled = Polygon(stroke.travelled()).area > ROUND_SHARE * math.pi * float(radius.mean()) ** 2
         if (
-            filled
-            and float(np.ptp(radius)) <= HOLE_MM
+            float(np.ptp(radius)) <= HOLE_MM
             and len(openings) + len(inside) - len(holes) > len(cuts.openings)
+            and (stroke.circle or Polygon(stroke.travelled()).area > ROUND_SHARE * math.pi * float(radius.mean()) ** 2)
         ):
             holes.append(RoundHole(centre, 2.0 * float(radius.mean()) + kerf_mm))
         else:
@@ -193,8 +191,8 @@ def _holes_and_openings(
 def _finished(cuts: PieceCuts, ways: Sequence[FloatArray], kerf_mm: float) -> tuple[Polygon, float]:
     """Finished area of a piece that is cut on ways (L, 2), mm, and how far it is off."""
     half = 0.5 * kerf_mm
-    area = Polygon(ways[0]).buffer(-half, quad_segs=BEAM_CHORDS)
-    burned = [Polygon(way).buffer(half, quad_segs=BEAM_CHORDS) for way in ways[1:]]
+    area = Polygon(ways[0]).buffer(-half, quad_segs=beam_chords(half))
+    burned = [Polygon(way).buffer(half, quad_segs=beam_chords(half)) for way in ways[1:]]
     finished = shapely.difference(area, shapely.union_all(burned)) if burned else area
     if not isinstance(finished, Polygon) or finished.is_empty:
         return Polygon(ways[0]), math.inf

@@ -3,8 +3,8 @@
 Programs choose the operation by colour: MeerK40t cuts pure red only, engraves blue and rasters white; K40 Whisperer
 engraves blue; LightBurn makes one cut setting for each colour.  No scheme suits them all, so the user picks one.
 
-A name that is engraved has a layer and a colour of its own, in which no profile cuts.  Files of profiles that stand for
-cuts alone do not have it.
+A name that is engraved has a layer and a colour of its own, in which no profile cuts, and so have the lines of artwork
+on pieces.  Files of profiles that stand for cuts alone have neither.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.words import mark
 
-RED, GREEN, CYAN, BLUE, MAGENTA, WHITE = 1, 3, 4, 5, 6, 7
+RED, GREEN, CYAN, BLUE, MAGENTA, WHITE, ORANGE = 1, 3, 4, 5, 6, 7, 30
 
 
 class DxfVersion(StrEnum):
@@ -37,6 +37,9 @@ ONE_LAYER = "SHEET"
 SLOT_LAYER = "SLOTS"
 #: Layer of a name that is engraved.
 NAME_LAYER = "NAME"
+#: Layer of the lines of artwork on pieces, and all layers that are engraved.
+ARTWORK_LAYER = "ARTWORK"
+ENGRAVED_LAYERS = frozenset({NAME_LAYER, ARTWORK_LAYER})
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +60,11 @@ class Profile:
     #: Units to the inch in which an SVG counts (25.4: mm), for programs that take its numbers for pixels; its width and
     #: height say mm in any case.
     svg_dpi: float = MM_DPI
+
+    @property
+    def artwork_colour(self) -> int | None:
+        """AutoCAD colour index of lines of artwork; None where everything in a file is cut."""
+        return ORANGE if self.name_colour == WHITE else self.name_colour
 
     def sheet_colour(self, layer: Layer) -> int:
         """Colour of a layer of a sheet, whose holes are no slits; those of pieces are red."""

@@ -42,6 +42,10 @@ SLOT_KERF, VERDICT = "SLOT_KERF_MM", "VERDICT"
 AROUND = "HOLES_AROUND"
 #: The same of holes in the sheet that hold it, which are made next.
 THROUGH = "HOLES_THROUGH"
+#: The fact with the number of sheets of several designs, each of which has a record of its own.
+SHEETS = "SHEETS"
+#: Facts in such a record: the corners of the box round the sheet, and its shift with the number of quarter turns.
+BOX, PLACE = "BOX_MM", "PLACE"
 #: Raised when entries change their meaning.
 VERSION = 1
 

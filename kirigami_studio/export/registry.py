@@ -9,6 +9,7 @@ from types import MappingProxyType
 from kirigami_studio.export.animation import write_animation
 from kirigami_studio.export.dxf import write_dxf
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.finite_elements import write_elements
 from kirigami_studio.export.fold import write_fold
 from kirigami_studio.export.layer_files import layer_folder, write_layer_files
 from kirigami_studio.export.lightburn import write_lightburn
@@ -63,6 +64,7 @@ WRITERS: Mapping[str, Writer] = MappingProxyType(
         ".obj": _meshes,
         ".fold": write_fold,
         ".xml": write_mjcf,
+        ".inp": write_elements,
         ".csv": write_tables,
     }
 )

@@ -155,8 +155,8 @@ def cutting_work(strokes: Sequence[Stroke], material: Material, machine: Machine
     """Time and lengths of strokes that are cut out of a material on a machine."""
     # Strokes know no layer of a plan; lengths and times do not depend on it.
     paths = [CutPath(stroke.points, Layer.SLITS, stroke.closed, bulges=stroke.bulges) for stroke in strokes]
-    length, travel = sum(path.length for path in paths), float(travel_lengths(paths).sum())
-    return Work(length, travel, cut_times(paths, material, machine))
+    travel = float(travel_lengths(paths).sum())
+    return Work(total_length(strokes), travel, cut_times(paths, material, machine))
 
 
 def total_work(works: Sequence[Work]) -> Work:
@@ -173,8 +173,27 @@ def layer_colours(strokes: Sequence[Stroke]) -> dict[str, int]:
 
 def extent(strokes: Sequence[Stroke]) -> tuple[float, float]:
     """Largest x and y that the head reaches; the smallest are 0."""
-    corner = np.concatenate([stroke.travelled() for stroke in strokes]).max(axis=0)
+    corner = np.concatenate([stroke.points for stroke in strokes]).max(axis=0)
+    for stroke in strokes:
+        # A circle begins at its rightmost point.
+        if stroke.bulges is not None and not (stroke.circle and _top(stroke) <= corner[1]):
+            corner = np.maximum(corner, stroke.travelled().max(axis=0))
     return float(corner[0]), float(corner[1])
+
+
+def _top(circle: Stroke) -> float:
+    (right, y), (left, _) = circle.points.tolist()
+    return float(y + 0.5 * (right - left))
+
+
+def total_length(strokes: Sequence[Stroke]) -> float:
+    """Length of strokes together, mm, arcs as arcs; one by one, many short ones take ten times as long."""
+    circles = np.array([stroke.points for stroke in strokes if stroke.circle]).reshape(-1, 2, 2)
+    lines = [stroke.travelled() for stroke in strokes if stroke.bulges is None]
+    steps = np.hypot(*np.diff(np.concatenate([np.zeros((1, 2)), *lines]), axis=0).T)
+    steps[np.cumsum([0, *map(len, lines)])[:-1]] = 0.0  # from one to the next
+    others = sum(stroke.length for stroke in strokes if stroke.bulges is not None and not stroke.circle)
+    return float(steps.sum() + math.pi * (circles[:, 0, 0] - circles[:, 1, 0]).sum() + others)
 
 
 def slot_contours(plan: CutPlan) -> list[tuple[Layer, FloatArray]]:

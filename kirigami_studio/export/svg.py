@@ -15,8 +15,8 @@ from kirigami_studio.assembly.posed_pieces import FINE, HEAD_RIM, PosedPieces, s
 from kirigami_studio.export import picture
 from kirigami_studio.export.design_record import NAME, record_text
 from kirigami_studio.export.exporter import ExportJob
-from kirigami_studio.export.picture import drawn_panels, hexadecimal
-from kirigami_studio.export.profile import BLUE, CYAN, GREEN, MAGENTA, MM_DPI, RED, WHITE, Profile, find_profile
+from kirigami_studio.export.picture import PlacedLayout, drawn_panels, hexadecimal
+from kirigami_studio.export.profile import BLUE, CYAN, GREEN, MAGENTA, MM_DPI, ORANGE, RED, WHITE, Profile, find_profile
 from kirigami_studio.export.provenance import PROGRAM, facts_of, origin_facts
 from kirigami_studio.export.strokes import Stroke, extent, file_strokes
 from kirigami_studio.fabricate.cut_plan import DECIMALS, CutPlan
@@ -44,6 +44,7 @@ ACI_COLOUR = {
     BLUE: (0, 0, 255),
     MAGENTA: (255, 0, 255),
     WHITE: (0, 0, 0),
+    ORANGE: (255, 128, 0),
 }
 
 
@@ -150,33 +151,64 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     if job.pieces is not None:
         _write_pieces_svg(job, job.pieces, Path(path))
         return
-    design, phi = job.posed, job.shown_phi
-    tables, scale = design.deployment.topology, design.mm_per_world(width_mm)
-    drawn, edges = drawn_panels(job, phi)
-    panels = [panel * scale for panel in drawn]
-    lines = [edge * scale for edge in edges] if edges is not None else [np.concatenate([p, p[:1]]) for p in panels]
-    # As cut the voids are other ones; the page shows through.
-    voids = [] if job.motion is not None else list(design.nodes(phi)[tables.void_nodes].reshape(-1, 4, 2) * scale)
-    target = [np.asarray(ring, dtype=np.float64) * scale for ring in as_rings(job.target)]
-    everything = np.concatenate([*panels, *voids, *target])
+    part = PlacedLayout(job, job.posed.mm_per_world(width_mm), np.zeros(2))
+    _write_layouts([part], Path(path), "" if job.motion is None else job.motion.caption)
+
+
+def write_parts_svg(parts: Sequence[PlacedLayout], path: str | Path) -> None:
+    """Draw the layouts of all parts, each in its place; as :func:`write_layout_svg`."""
+    _write_layouts(parts, Path(path), "")
+
+
+def _write_layouts(parts: Sequence[PlacedLayout], path: Path, caption: str) -> None:
+    """Draw layouts, the same of each in one group."""
+    found = [_layout_shapes(part) for part in parts]
+    groups = [
+        (name, colour, [shape for shapes in found for shape in shapes[name]])
+        for name, colour in (
+            ("TARGET_AREA", picture.TARGET_FILL),
+            ("VOIDS", picture.VOID),
+            ("PANELS", picture.PANEL),
+            ("EDGES", picture.PANEL_EDGE),
+            ("TARGET", picture.TARGET_EDGE),
+        )
+    ]
+    shown = ("TARGET_AREA", "VOIDS", "PANELS")
+    everything = np.concatenate(
+        [ring for name, _, shapes in groups if name in shown for rings in shapes for ring in rings]
+    )
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
     width, height = (float(side) for side in everything.max(axis=0) + LAYOUT_MARGIN_MM - low)
-    caption = "" if job.motion is None else job.motion.caption
+    _write_shapes(parts[0].job, path, groups, low, (width, height), caption)
+
+
+def _layout_shapes(part: PlacedLayout) -> dict[str, list[list[FloatArray]]]:
+    """Shapes of a layout, group by group, each as its rings (L, 2), mm."""
+    job = part.job
+    design, phi = job.posed, job.shown_phi
+    tables = design.deployment.topology
+    drawn, edges = drawn_panels(job, phi)
+    panels = [part.put(panel) for panel in drawn]
+    lines = [part.put(edge) for edge in edges] if edges is not None else [np.concatenate([p, p[:1]]) for p in panels]
+    # As cut the voids are other ones; the page shows through.
+    voids = [] if job.motion is not None else list(part.put(design.nodes(phi)[tables.void_nodes].reshape(-1, 4, 2)))
+    target = [part.put(np.asarray(ring, dtype=np.float64)) for ring in as_rings(job.target)]
     rims = [np.concatenate([loop, loop[:1]]) for loop in target]
-    groups: list[tuple[str, picture.Colour, list[list[FloatArray]]]] = [
-        ("TARGET_AREA", picture.TARGET_FILL, [target] if target else []),
-        ("VOIDS", picture.VOID, [[void] for void in voids]),
-        ("PANELS", picture.PANEL, [[panel] for panel in panels]),
-        ("EDGES", picture.PANEL_EDGE, [_band(line, EDGE_MM) for line in lines]),
-        ("TARGET", picture.TARGET_EDGE, [_band(rim, TARGET_MM) for rim in rims]),
-    ]
-    _write_shapes(job, Path(path), groups, low, (width, height), caption)
+    return {
+        "TARGET_AREA": [target] if target else [],
+        "VOIDS": [[void] for void in voids],
+        "PANELS": [[panel] for panel in panels],
+        "EDGES": [_band(line, EDGE_MM) for line in lines],
+        "TARGET": [_band(rim, TARGET_MM) for rim in rims],
+    }
 
 
 def _write_pieces_svg(job: ExportJob, pieces: PosedPieces, path: Path) -> None:
     """Draw pieces layer by layer over the target, at their own size."""
     phi, scale, look = job.shown_phi, pieces.mm_per_world, pieces.look
-    rings = [[ring * scale for ring in shape] for shape in pieces.simplified(FINE).rings(phi)]
+    coarse = pieces.simplified(FINE)
+    rings = [[ring * scale for ring in shape] for shape in coarse.rings(phi)]
+    drawn = [[line * scale for line in lines] for lines in coarse.drawn(phi)]
     target = [np.asarray(ring, dtype=np.float64) * scale for ring in as_rings(job.target)]
     everything = np.concatenate([*(shape[0] for shape in rings), *target])
     low = everything.min(axis=0) - LAYOUT_MARGIN_MM
@@ -189,6 +221,8 @@ def _write_pieces_svg(job: ExportJob, pieces: PosedPieces, path: Path) -> None:
         edges = [_band(np.concatenate([ring, ring[:1]]), EDGE_MM) for shape in shapes for ring in shape]
         groups.append((f"LAYER_{place}", look.layer(place - 1, len(pieces.layers)), shapes))
         groups.append((f"EDGES_{place}", look.line, edges))
+        lines = [_band(line, EDGE_MM) for number in layer for line in drawn[number]]
+        groups += [(f"ARTWORK_{place}", look.number, lines)] if lines else []
     heads = pieces.heads(phi) * scale
     for name, colour, share in (("HEAD_RIMS", shaded(look.head, HEAD_RIM), 1.0), ("HEADS", look.head, 0.8)):
         discs = [shapely.Point(head).buffer(0.5 * share * pieces.head_mm, quad_segs=6) for head in heads]

@@ -25,6 +25,7 @@ from kirigami_studio.export.jam_angle import jam_angle_of_file, matched_connecto
 from kirigami_studio.export.layer_files import by_layer, laid_together, layer_folder, layer_paths
 from kirigami_studio.export.lightburn import lightburn_bytes, read_lightburn
 from kirigami_studio.export.profile import DEFAULT_PROFILE, NAME_LAYER, DxfVersion, Profile, find_profile
+from kirigami_studio.export.sheet_bed import SheetBed
 from kirigami_studio.export.strokes import (
     Stroke,
     extent,
@@ -33,12 +34,13 @@ from kirigami_studio.export.strokes import (
     name_strokes,
     sheet_strokes,
     strokes_of,
+    total_length,
     work_of,
 )
 from kirigami_studio.export.svg_reading import LARGEST_FILE, read_with_svgelements, read_with_xml
-from kirigami_studio.export.voids_read import FoundVoids, read_voids
+from kirigami_studio.export.voids_read import LEAST_RING, FoundVoids, read_voids
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM
-from kirigami_studio.fabricate.copies import SAME_MM, alike, copy_numbers
+from kirigami_studio.fabricate.copies import SAME_MM, alike, are_apart, copy_numbers
 from kirigami_studio.fabricate.cut_path import MEASURED_CHORD_MM
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.fabricate.engraving import MARGIN_MM, clearance_mm, nearest_cut
@@ -100,6 +102,7 @@ class Verification:
     #: radians; where the sheet jams, 0 if it closes: by its simulation where that is known and the file is as planned,
     #: else by the estimate for these centres; None where nothing is known
     jam_phi: float | None = None
+    sheet: str = ""  #: Name of the sheet that it is about, of a file that holds several
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,19 +152,96 @@ def verify_export(
     """
     goal, profile = Path(path), find_profile(profile_key)
     if goal.suffix.lower() == ".lbrn2":
-        return _project_verified(plan, goal, simulated_jam)
-    strokes = strokes_of(plan, profile)
+        return _project_verified(plan, goal, simulated_jam, lightburn_bytes(plan), len(plan.copies))
+    goal, kind, contents = _read_twice(goal, profile)
+    strokes = _as_filed(strokes_of(plan, profile), goal)
+    return _judged(plan, goal, profile, version, strokes, contents, kind, deployment, simulated_jam)
+
+
+def verify_bed(
+    bed: SheetBed, path: str | Path, profile_key: str, version: str | None = "R2010", project: bytes = b""
+) -> tuple[Verification, ...]:
+    """Read the file of a bed with two readers, and compare every sheet with its plan.
+
+    Parameters
+    ----------
+    bed : SheetBed
+    path, profile_key, version
+        As for :func:`verify_export`.
+    project : bytes
+        The LightBurn project that the bed makes, which one that was written is compared with.
+
+    Returns
+    -------
+    verifications : tuple of Verification
+        One for each sheet; what is wrong with the whole file stands in all of them.
+
+    Raises
+    ------
+    ExportError
+        As :func:`verify_export`.
+    """
+    goal, profile = Path(path), find_profile(profile_key)
+    if goal.suffix.lower() == ".lbrn2":
+        return tuple(_project_verified(sheet.plan, goal, sheet.simulated_jam, project) for sheet in bed.sheets)
+    goal, kind, contents = _read_twice(goal, profile)
+    dialect = version or _dialect(goal, contents)
+    planned = _as_filed(bed.strokes(profile), goal)
+    of_file = agreed(contents, [reader_findings(content, planned, dialect, kind) for content in contents])
+    sheets = [bed.by_sheet(content.strokes, profile) for content in contents]
+    together = [*(finding for finding in of_file if not finding.ok), _apart(sheets[-1], bed)]
+    found = []
+    for number, sheet in enumerate(bed.sheets):
+        own = [_alone(content, strokes[number]) for content, strokes in zip(contents, sheets, strict=True)]
+        meant = _as_filed(sheet_strokes(sheet.plan, profile), goal)
+        judged = _judged(sheet.plan, goal, profile, dialect, meant, own, kind, sheet.deployment, sheet.simulated_jam)
+        findings = (*judged.findings, *together)
+        found.append(replace(judged, findings=findings, ok=all(finding.ok for finding in findings)))
+    return tuple(found)
+
+
+def _alone(content: FileContent, strokes: Sequence[Stroke]) -> FileContent:
+    """Content of the file of one sheet; the frame of a file is that of its cuts."""
+    cuts = [stroke for stroke in strokes if stroke.layer != NAME_LAYER]
+    return replace(content, strokes=tuple(strokes), extent=extent(cuts) if cuts else None)
+
+
+def _apart(sheets: Sequence[Sequence[Stroke]], bed: SheetBed) -> Finding:
+    """Whether the sheets of a bed, each in its own frame, lie apart where they are placed."""
+    clouds = [
+        place.put(np.concatenate([stroke.travelled() for stroke in sheet] or [np.zeros((1, 2))]))
+        for sheet, place in zip(sheets, bed.places, strict=True)
+    ]
+    # Slots and overcuts reach beyond cut lines by less than a kerf.
+    least = bed.gap_mm - max(sheet.plan.kerf_mm for sheet in bed.sheets)
+    right = are_apart(clouds, least, SAME_MM)
+    found = {"count": len(sheets), "gap_mm": bed.gap_mm}
+    return Finding.judged(right, "verify.sheets" if right else "verify.sheets_meet", **found)
+
+
+def _read_twice(goal: Path, profile: Profile) -> tuple[Path, Format, list[FileContent]]:
+    """Place of a file or of the folder of its layers, its kind, and what both readers find."""
     if profile.file_per_layer and goal.suffix.lower() != ".svg":
         goal, kind = layer_folder(goal), FORMATS[".dxf"]
         parts = layer_paths(goal)
-        strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
-        contents = [laid_together([read(part) for part in parts], goal) for read in kind.readers]
-        return _judged(plan, goal, profile, version, strokes, contents, kind, deployment, simulated_jam)
+        return goal, kind, [laid_together([read(part) for part in parts], goal) for read in kind.readers]
     if goal.suffix.lower() not in FORMATS:
         raise ExportError("verify.unknown_kind", path=goal, known=", ".join(FORMATS))
     kind = FORMATS[goal.suffix.lower()]
-    contents = [read(goal) for read in kind.readers]
-    return _judged(plan, goal, profile, version, strokes, contents, kind, deployment, simulated_jam)
+    return goal, kind, [read(goal) for read in kind.readers]
+
+
+def _as_filed(strokes: Sequence[Stroke], goal: Path) -> tuple[Stroke, ...]:
+    """Strokes in the order in which a file, or the folder of its layers, has them."""
+    if goal.suffix.lower() in FORMATS:
+        return tuple(strokes)
+    return tuple(stroke for part in by_layer(strokes).values() for stroke in part)
+
+
+def _dialect(path: Path, contents: Sequence[FileContent]) -> str:
+    """The DXF version that a file says it is in."""
+    old = path.suffix.lower() != ".svg" and all(content.unit is None for content in contents)
+    return DxfVersion.R12 if old else DxfVersion.R2010
 
 
 def _judged(
@@ -175,8 +255,7 @@ def _judged(
     deployment: Deployment | None,
     simulated_jam: float | None,
 ) -> Verification:
-    old = path.suffix.lower() != ".svg" and all(content.unit is None for content in contents)
-    version = dialect or (DxfVersion.R12 if old else DxfVersion.R2010)
+    version = dialect or _dialect(path, contents)
     written, contents = contents, [_cuts_of(content) for content in contents]
     sheets = _copies_read(contents[-1].strokes, plan)
     physics = file_physics(sheets[0], plan, profile)
@@ -210,17 +289,19 @@ def _judged(
     )
 
 
-def _project_verified(plan: CutPlan, path: Path, simulated_jam: float | None) -> Verification:
+def _project_verified(
+    plan: CutPlan, path: Path, simulated_jam: float | None, project: bytes, copies: int = 1
+) -> Verification:
     """Compare a LightBurn project with the one that its plan makes: every path, on its layer, in its order."""
     found = read_lightburn(_bytes_of(path), path)
-    meant = read_lightburn(lightburn_bytes(plan), path)
+    meant = read_lightburn(project, path)
     same = len(found.paths) == len(meant.paths) and all(
         one.layer == other.layer and np.array_equal(one.curves, other.curves)
         for one, other in zip(found.paths, meant.paths, strict=True)
     )
     profile = find_profile(DEFAULT_PROFILE)
     strokes = sheet_strokes(plan, profile)
-    work = work_of(strokes_of(plan, profile), plan)
+    work = work_of(strokes_of(plan, profile) if copies > 1 else strokes, plan)
     findings = [Finding.judged(same, "verify.project_as_planned" if same else "verify.project_differs")]
     physics = file_physics(strokes, plan, profile) if same else None
     if physics is not None:
@@ -229,7 +310,7 @@ def _project_verified(plan: CutPlan, path: Path, simulated_jam: float | None) ->
         path=path,
         ok=all(finding.ok for finding in findings),
         size_mm=plan.bounds_mm,
-        pieces=None if physics is None else physics.pieces * len(plan.copies),
+        pieces=None if physics is None else physics.pieces * copies,
         cut_length_mm=work.cut_length_mm,
         seconds_low=work.times.low,
         seconds_high=work.times.high,
@@ -356,7 +437,7 @@ def _point_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format
 
 
 def _length_finding(content: FileContent, strokes: Sequence[Stroke], kind: Format) -> Finding:
-    points, planned = sum(len(stroke.points) for stroke in strokes), sum(stroke.length for stroke in strokes)
+    points, planned = sum(len(stroke.points) for stroke in strokes), total_length(strokes)
     right = abs(content.length - planned) <= kind.shift_mm * max(points, 1)
     # Rounded as they are shown, so that readers that agree in print agree.
     return Finding.judged(right, "verify.length", length_mm=round(content.length, 3), planned_mm=round(planned, 3))
@@ -402,7 +483,10 @@ def file_physics(strokes: Sequence[Stroke], plan: CutPlan, profile: Profile) -> 
     lines = [LineString(points) for points in traced]
     inner, rim = lines[: -outlines - holes], traced[-outlines:]
     openings = [points for points in traced[-outlines - holes : -outlines] if len(points) > 3]
-    outline = Polygon(rim[0] if outlines == 1 else joined_ring(rim))
+    ring = rim[0] if outlines == 1 else joined_ring(rim)
+    if len(ring) < LEAST_RING:  # another line is where the outline should be
+        return Physics(0, None, max(overlap_length(lines), 0.0))
+    outline = Polygon(ring)
     drawn = Polygon(outline.exterior, openings)
     boundary = drawn if drawn.is_valid else outline  # a file that lost a hole has other cuts in its place
     kerf = 0.0 if profile.slots else plan.kerf_mm

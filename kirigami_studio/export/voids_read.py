@@ -43,6 +43,8 @@ SHAPE_SHARE = 0.5
 OUTLINE = -1
 #: A round end of a slot turns by at least this (radians) within half its circle, give or take ``ROUND_MORE``.
 ROUND_TURN, ROUND_MORE = 0.9 * math.pi, 1.1
+#: Points of a ring that encloses something, its first one repeated.
+LEAST_RING = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +122,8 @@ def read_voids(
         return _voids([])
     rims = [shapely.get_coordinates(line) for line in lines[-outlines:]]
     ring = rims[0] if outlines == 1 else np.concatenate([joined_ring(rims), rims[0][:1]])
+    if len(ring) < LEAST_RING:  # another line is where the outline should be
+        return _voids([])
     openings = [line for line in lines[-outlines - holes : -outlines] if len(line.coords) > 3]
     rim = MultiLineString([LineString(ring), *openings]) if holes else LineString(ring)
     group, tips = _line_tips(inner, [stroke.closed for stroke in strokes[: len(inner)]], Polygon(ring, openings))

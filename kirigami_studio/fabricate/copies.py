@@ -139,11 +139,16 @@ def alike(clouds: Sequence[FloatArray], gap_mm: float, tolerance_mm: float) -> b
     gap_mm : float
         Least distance between the boxes around any two.
     """
-    lows, highs = (np.array([edge(cloud, axis=0) for cloud in clouds]) for edge in (np.min, np.max))
-    first = clouds[0] - lows[0]
-    for cloud, low in zip(clouds, lows, strict=True):
-        if cloud.shape != first.shape or float(np.abs(cloud - low - first).max()) > tolerance_mm:
+    first = clouds[0] - clouds[0].min(axis=0)
+    for cloud in clouds:
+        if cloud.shape != first.shape or float(np.abs(cloud - cloud.min(axis=0) - first).max()) > tolerance_mm:
             return False
+    return are_apart(clouds, gap_mm, tolerance_mm)
+
+
+def are_apart(clouds: Sequence[FloatArray], gap_mm: float, tolerance_mm: float) -> bool:
+    """Whether the boxes around any two clouds of points (P, 2), mm, are so far from each other."""
+    lows, highs = (np.array([edge(cloud, axis=0) for cloud in clouds]) for edge in (np.min, np.max))
     apart = np.maximum(lows[:, None] - highs[None], lows[None] - highs[:, None]).max(axis=2)
     np.fill_diagonal(apart, np.inf)
     return bool(apart.min() >= gap_mm - tolerance_mm)

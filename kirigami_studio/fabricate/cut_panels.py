@@ -77,12 +77,18 @@ class CutPanels:
 @lru_cache(maxsize=16)
 def cut_panels(plan: CutPlan) -> CutPanels:
     """Divide a sheet into the panels that its cuts leave."""
-    lines, owner = _lines(plan)
-    necks = _necks(plan, lines, owner)
+    lines, _ = _lines(plan)
+    ends = necks_of(plan)[1]
+    more = ends[:, 1] - ends[:, 0]
+    more *= BEYOND_MM / np.maximum(np.hypot(*more.T), BEYOND_MM)[:, None]
+    necks = [
+        shapely.LineString([tip - beyond, tip, foot, foot + beyond])
+        for (tip, foot), beyond in zip(ends, more, strict=True)
+    ]
     noded = shapely.union_all([*lines, *necks])
     faces, bridges, dangles, _ = shapely.polygonize_full(shapely.get_parts(noded))
     parts = shapely.get_parts(faces)
-    panel = _panels_of(parts, plan)
+    panel = panels_of(parts, plan)
     rings: list[tuple[int, FloatArray]] = []
     for number in np.unique(panel[panel >= 0]).tolist():
         own = shapely.get_parts(shapely.union_all(parts[panel == number]))
@@ -104,11 +110,20 @@ def _lines(plan: CutPlan) -> tuple[npt.NDArray[np.object_], IntArray]:
     return np.array(lines, dtype=object), np.array([*(path.cut for path in paths), SHEET_EDGE])
 
 
-def _necks(plan: CutPlan, lines: npt.NDArray[np.object_], owner: IntArray) -> list[shapely.LineString]:
-    """Where panels end at their connectors."""
+def necks_of(plan: CutPlan) -> tuple[IntArray, FloatArray]:
+    """Where panels end at their connectors.
+
+    Returns
+    -------
+    hinges : (N,) int
+        Numbers of the connectors, removed ones left out.
+    ends : (N, 2, 2) float, mm
+        From the end of each one's slit to the nearest place of the cut that it rests on, on centre lines.
+    """
+    lines, owner = _lines(plan)
     groups = {number: shapely.multilinestrings(lines[owner == number].tolist()) for number in set(owner.tolist())}
     outline = groups[SHEET_EDGE]
-    found, hinges = [], plan.hinges
+    numbers, ends, hinges = [], [], plan.hinges
     for hinge in np.flatnonzero(~hinges.lost & (hinges.finished_mm > 0.0)).tolist():
         slit = groups.get(int(hinges.cut[hinge]))
         if slit is None:
@@ -118,13 +133,12 @@ def _necks(plan: CutPlan, lines: npt.NDArray[np.object_], owner: IntArray) -> li
         # Where trimming took the cut that a slit rests on, the outline is in its place.
         against = through if through is outline else shapely.union(through, outline)
         foot = shapely.get_coordinates(shapely.shortest_line(against, shapely.Point(tip)))[0]
-        away = foot - tip
-        more = away * (BEYOND_MM / max(float(np.hypot(*away)), BEYOND_MM))
-        found.append(shapely.LineString([tip - more, tip, foot, foot + more]))
-    return found
+        numbers.append(hinge)
+        ends.append([tip, foot])
+    return np.array(numbers, dtype=np.intp), np.array(ends).reshape(-1, 2, 2)
 
 
-def _panels_of(parts: npt.NDArray[np.object_], plan: CutPlan) -> IntArray:
+def panels_of(parts: npt.NDArray[np.object_], plan: CutPlan) -> IntArray:
     """The panel that each part belongs to, -1 for none."""
     there = [number for number, panel in enumerate(plan.panels) if len(panel) > 2]
     ideal = np.array([shapely.make_valid(shapely.Polygon(plan.panels[number])) for number in there], dtype=object)

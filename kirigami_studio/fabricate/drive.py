@@ -6,8 +6,6 @@ from enum import StrEnum
 
 #: Width of arms, mm, and how long they may be.
 ARM_MM, SHORTEST_MM, LONGEST_MM = 16.0, 20.0, 90.0
-#: Length that is preferred, mm: short arms turn hard sheets, long ones bear play.
-USUAL_MM = 40.0
 #: Least room between parts that pass each other, and least wall between cuts of the board, mm.
 ROOM_MM, WALL_MM = 1.0, 4.0
 #: Margin of the board round all that moves over it, mm; screws to the wall stand in it, with holes as wide as these.

@@ -28,7 +28,7 @@ from kirigami_studio.fabricate.centres import BULGE_SPANS, void_hinges
 from kirigami_studio.fabricate.clearances import Clearances, SparseJacobian, clearances
 from kirigami_studio.fabricate.connectors import directions
 from kirigami_studio.fabricate.detours import shortest_turn
-from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, edge_sides
+from kirigami_studio.fabricate.slits import SHEET_EDGE, CutTable, cut_table, edge_sides
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.foundation.threads import one_blas_thread
@@ -102,6 +102,14 @@ def with_room(
             if found is None or programme.changed_share(found) <= CHANGED_SHARE:
                 return deployment if found is None else found
     return deployment
+
+
+def roomy(
+    deployment: Deployment, width_mm: float, span_mm: float, go_on: Callable[[], None] = lambda: None
+) -> Deployment:
+    """Make room for connectors of one width on all hinges; arguments as for :func:`with_room`."""
+    table = cut_table(*deployment.sheet.grid)
+    return with_room(deployment, width_mm, np.full(table.hinge_count, span_mm), table, (), go_on)
 
 
 def has_room(

@@ -18,7 +18,7 @@ from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.fabricate.cut_path import measured_line
-from kirigami_studio.fabricate.finished_sheet import overlap_length, remaining_pieces
+from kirigami_studio.fabricate.finished_sheet import SAME_LINE_MM, overlap_length, remaining_pieces
 from kirigami_studio.fabricate.slits import CutTable
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import FabricationError
@@ -195,7 +195,26 @@ def outline_around(area: Polygon, kerf_mm: float, straight_mm: float = STRAIGHT_
     closed = _grown(_grown(area, max(0.5 * kerf_mm, HAIR_MM)), -max(0.5 * kerf_mm, HAIR_MM))
     smooth = _grown(_grown(_open(closed), -HAIR_MM), HAIR_MM + 0.5 * kerf_mm)
     outline = shapely.simplify(_open(smooth), straight_mm)
-    return _open(_largest(shapely.set_precision(outline, GRID_MM)))
+    return _without_spikes(_open(_largest(shapely.set_precision(outline, GRID_MM))))
+
+
+def _without_spikes(area: Polygon) -> Polygon:
+    """The area without corners at which a rim runs back along itself: that stretch would be cut twice."""
+    rings = [_without_turning_back(shapely.get_coordinates(ring)[:-1]) for ring in (area.exterior, *area.interiors)]
+    return Polygon(rings[0], rings[1:])
+
+
+def _without_turning_back(ring: FloatArray) -> FloatArray:
+    """The vertices (P, 2) of a ring without those where the nearer neighbour lies on the other one's side."""
+    while len(ring) > 3:
+        before, after = np.roll(ring, 1, axis=0) - ring, np.roll(ring, -1, axis=0) - ring
+        lengths = np.hypot(*before.T), np.hypot(*after.T)
+        across = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]) / np.maximum(*lengths)
+        back = np.flatnonzero((np.sum(before * after, axis=1) > 0.0) & (across < 2.0 * SAME_LINE_MM))
+        if not len(back):
+            break
+        ring = np.delete(ring, back[0], axis=0)
+    return ring
 
 
 def _open(area: Polygon) -> Polygon:

@@ -178,13 +178,18 @@ def symmetry_of(sheet: Sheet) -> Symmetry | None:
     return next((symmetry for symmetry in MOST_FIRST if has_symmetry(sheet, symmetry)), None)
 
 
-def has_symmetry(sheet: Sheet, symmetry: Symmetry) -> bool:
-    """Whether a sheet has a symmetry, with its rim and start outline."""
+def nearly_symmetric(sheet: Sheet, off: float) -> Symmetry | None:
+    """The largest symmetry that a sheet has within ``off`` of its ratios (log10); None without any."""
+    return next((symmetry for symmetry in MOST_FIRST if has_symmetry(sheet, symmetry, off)), None)
+
+
+def has_symmetry(sheet: Sheet, symmetry: Symmetry, off: float = SAME) -> bool:
+    """Whether a sheet has a symmetry, with its rim and start outline, and its ratios within ``off`` (log10)."""
     if not symmetry.fits(*sheet.grid):
         return False
     z, points = sheet.field.log10, anchor_points(sheet)
     points = points - 0.5 * (points.min(axis=0) + points.max(axis=0))
-    return all(np.abs(image - z).max() < SAME for image in symmetry.images(z)) and all(
+    return all(np.abs(image - z).max() < off for image in symmetry.images(z)) and all(
         _same_points(points @ move.matrix, points) for move in symmetry.moves
     )
 

@@ -65,7 +65,7 @@ def grip_steps(
     end : float, radians
     """
     angles = np.linspace(math.pi, end, steps)
-    order = panels_to_pin(deployment, sheet, width_mm, min(PINS[-1], sheet.network.panel_count))
+    order = SoftMotions.for_grips(deployment, sheet, width_mm).order(min(PINS[-1], sheet.network.panel_count))
     for count in PINS:
         held, moved = tuple(order[:1]), tuple(order[1:count])
         yield
@@ -77,12 +77,70 @@ def grip_steps(
     return tried
 
 
-def panels_to_pin(deployment: Deployment, sheet: SheetNetwork, width_mm: float, count: int) -> list[int]:
-    """Panels in the order in which pins at their middles take away most of the sheet's softest motions.
+@dataclass(frozen=True, slots=True, eq=False)
+class SoftMotions:
+    """The softest motions of a sheet on its ideal path, each as large as its energy allows.
 
-    Motions are those of the least eigenvalues of the Hessian on the ideal path, each as large as its energy allows.
-    What a pin takes away is no longer counted for the next one.
+    Attributes
+    ----------
+    panels : tuple of int
+        All panels, row by row.
+    ways : (K, 2, M) float
+        How the middle of each of them moves in each of the motions.
     """
+
+    panels: tuple[int, ...]
+    ways: FloatArray
+
+    @classmethod
+    def of(cls, deployment: Deployment, sheet: SheetNetwork, width_mm: float, count: int) -> SoftMotions:
+        """Those of the least eigenvalues of the Hessian, as many as a number of pins need."""
+        network = sheet.network
+        panels = tuple(network.number_of(place) for place in range(network.panel_count))
+        return cls(panels, _softest(deployment, sheet, width_mm, count))
+
+    @classmethod
+    def for_grips(cls, deployment: Deployment, sheet: SheetNetwork, width_mm: float) -> SoftMotions:
+        """As many as the most pins need that are tried."""
+        return cls.of(deployment, sheet, width_mm, min(PINS[-1], sheet.network.panel_count))
+
+    def order(self, count: int, among: Sequence[int] | None = None) -> list[int]:
+        """Panels in the order in which pins at their middles take away most of the motions.
+
+        What a pin takes away is no longer counted for the next one.  Only those of ``among`` are chosen, if given.
+        """
+        wanted = None if among is None else frozenset(among)
+        free = np.array([wanted is None or panel in wanted for panel in self.panels])
+        left, chosen = self.ways, []
+        for _ in range(count):
+            place = int(np.argmax(np.where(free, np.sum(left**2, axis=(1, 2)), -1.0)))
+            chosen.append(self.panels[place])
+            left = _pinned(left, place)
+        return list(dict.fromkeys(chosen))
+
+    def taken(self, panels: Sequence[int]) -> float:
+        """Share of the motions, 0 to 1, that pins at the middles of panels take away."""
+        place = {panel: number for number, panel in enumerate(self.panels)}
+        rows = np.concatenate([self.ways[place[panel]] for panel in panels])
+        basis, _ = np.linalg.qr(rows.T)
+        flat = self.ways.reshape(-1, self.ways.shape[-1])
+        return float(np.sum((flat @ basis) ** 2) / np.sum(flat**2))
+
+
+def _pinned(left: FloatArray, place: int) -> FloatArray:
+    """Motions that are left where one panel is pinned."""
+    basis, _ = np.linalg.qr(left[place].T)
+    found: FloatArray = left - (left @ basis) @ basis.T
+    return found
+
+
+def panels_to_pin(deployment: Deployment, sheet: SheetNetwork, width_mm: float, count: int) -> list[int]:
+    """Panels in the order in which pins at their middles take away most soft motions."""
+    return SoftMotions.of(deployment, sheet, width_mm, count).order(count)
+
+
+def _softest(deployment: Deployment, sheet: SheetNetwork, width_mm: float, count: int) -> FloatArray:
+    """How the middles of all panels move in the softest motions, (K, 2, M)."""
     energy, network = NetworkEnergy(sheet.network), sheet.network
     per_turn = diags_array(1.0 / np.tile([1.0, 1.0, network.panel_size], network.panel_count))
     soft = []
@@ -95,14 +153,8 @@ def panels_to_pin(deployment: Deployment, sheet: SheetNetwork, width_mm: float, 
         start = np.linspace(1.0, 2.0, 3 * network.panel_count)
         values, vectors = eigsh(scaled, k=wanted, sigma=shift, v0=start)
         soft.append((vectors / np.sqrt(np.maximum(values - shift, 1e-12))).reshape(-1, 3, wanted)[:, :2])
-    left: FloatArray = np.concatenate(soft, axis=2)
-    chosen: list[int] = []
-    for _ in range(count):
-        panel = int(np.argmax(np.sum(left**2, axis=(1, 2))))
-        chosen.append(panel)
-        basis, _ = np.linalg.qr(left[panel].T)
-        left = left - (left @ basis) @ basis.T
-    return [network.number_of(panel) for panel in dict.fromkeys(chosen)]
+    found: FloatArray = np.concatenate(soft, axis=2)
+    return found
 
 
 def grips(

@@ -21,6 +21,8 @@ from kirigami_studio.mechanics.closing import Closing
 
 #: Mean void angle (radians) below which panels are tried: in flatter sheets they are where they were cut.
 TRIED_BELOW = math.radians(150.0)
+#: Nearer than this (mm) a place lies on an edge.
+ON_EDGE_MM = 1e-3
 
 
 def contacts_on_way(panels: Sequence[FloatArray], found: Closing, kerf_mm: float) -> Meetings:
@@ -110,20 +112,37 @@ class _ClosingPath:
         return rows
 
     def _angle(self, at: int, edge: int, corner: int, places: ComplexArray, step: int) -> float:
-        """Void angle (radians) from which a corner is in front of an edge, less the margin of stops."""
+        """Void angle (radians) from which a corner is in front of an edge, less the margin of stops.
+
+        Beside the edge it is not: corners that come round its end are on both sides of its line on their way.
+        """
         point, foot, normal = places
         turn = np.exp(1j * self._motion[: step + 1, :, 2])
         at_rest = self._centroid
         there = at_rest + self._motion[: step + 1, :, 0] + 1j * self._motion[: step + 1, :, 1]
         apart = there[:, corner] + turn[:, corner] * (point - at_rest[corner])
         apart -= there[:, edge] + turn[:, edge] * (foot - at_rest[edge])
-        gap = (apart * np.conj(turn[:, edge] * normal)).real
-        in_front = np.flatnonzero(gap[:step] > 0.0)
+        seen = apart * np.conj(turn[:, edge] * normal)
+        low, high = self._reach(edge, foot, normal)
+        before = (seen.real > 0.0) & (seen.imag > low) & (seen.imag < high)
+        in_front = np.flatnonzero(before[:step])
         if not in_front.size:  # an edge that it never was in front of counts from here on
             return math.pi - float(self._opening[step, at]) - MARGIN
-        behind = np.flatnonzero(gap[: in_front[-1]] <= 0.0)
+        behind = np.flatnonzero(~before[: in_front[-1]])
         first = int(behind[-1]) + 1 if behind.size else 1  # in the flat sheet nothing tells which way it opens
         return math.pi - float(self._opening[first, at]) - MARGIN
+
+    def _reach(self, panel: int, foot: complex, normal: complex) -> tuple[float, float]:
+        """How far (mm) the edge of a panel goes along its line to either side of a foot, and a connector's width."""
+        rings = [_plane(shapely.get_coordinates(ring)) for ring in shapely.get_parts(self._rigid[panel].boundary)]
+        ends = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+        ends = (ends - foot) * np.conj(normal)
+        near = (np.abs(ends.real) < ON_EDGE_MM).all(axis=1)
+        near &= (ends.imag.min(axis=1) < ON_EDGE_MM) & (ends.imag.max(axis=1) > -ON_EDGE_MM)
+        width = float(self._connectors.width_mm.mean())
+        if not near.any():  # the foot is a hollow corner, where the normal stands square to no edge
+            return -width, width
+        return float(ends.imag[near].min()) - width, float(ends.imag[near].max()) + width
 
     def _is_stopped(self, edge: int, corner: int, point: complex) -> bool:
         """Whether a panel's edge has a stop for a place (at rest) of another panel."""

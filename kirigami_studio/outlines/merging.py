@@ -1,4 +1,4 @@
-"""Chosen parts of a source -> one outline: united, bridged, or their hull."""
+"""Chosen parts of a source -> one outline: united, bridged, their hull; or each alone."""
 
 from __future__ import annotations
 
@@ -44,6 +44,10 @@ USUAL_BRIDGE, USUAL_STROKE = 0.04, 0.02
 LEAST_WIDTH, MOST_WIDTH = 1e-4, 1.0
 #: Each pair of pieces has a distance to be measured.
 MOST_PIECES = 200
+#: Each piece by itself is designed, shown and cut by itself.
+MOST_SHEETS = 24
+#: Pieces below this share of the largest one's area are left over from rounding: no sheet is so small.
+SPECK_OF_LARGEST = 1e-5
 #: How closely a tight hull follows the parts, from 0, the convex hull, to 1.
 USUAL_TIGHTNESS = 0.7
 #: Distance of the points that a tight hull is made of, share of the size.
@@ -63,6 +67,7 @@ class Join(Enum):
     BRIDGE = "bridge"  #: pieces are held together by bridges between their nearest places
     HULL = "hull"  #: the convex hull
     TIGHT = "tight"  #: a hull that follows the parts into hollows
+    EACH = "each"  #: not at all: every piece is a sheet of its own
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +90,18 @@ class Merged:
     outline: Outline
     shape: Polygon  #: source units, y up; the outline in its place among the parts
     bridges: tuple[Polygon, ...] = ()  #: source units, y up
+    others: tuple[Merged, ...] = ()  #: the other pieces, where each is to be a sheet of its own
+
+    @property
+    def all(self) -> tuple[Merged, ...]:
+        """This piece and the others."""
+        return self, *self.others
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """Area centroid of the outer ring among the parts, source units, y up."""
+        centroid = Polygon(self.shape.exterior).centroid
+        return float(centroid.x), float(centroid.y)
 
 
 def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merged:
@@ -141,12 +158,61 @@ def merged(source: SourceParts, parts: Sequence[Part], merging: Merging) -> Merg
                         len(bridges),
                     )
                 )
-    alone = len(parts) == 1 < len(source.parts) and parts[0].is_named
     breadth = _breadth(parts, merging.as_painted)
+    if merging.join is Join.EACH:
+        return _each(source, region, parts, notes, breadth, merging.fill_holes)
+    alone = len(parts) == 1 < len(source.parts) and parts[0].is_named
     outline, shape = _outline(
         source, region, notes, parts[0].name if alone else source.name, breadth, merging.fill_holes
     )
     return Merged(outline, shape, bridges)
+
+
+def _each(
+    source: SourceParts,
+    region: BaseGeometry,
+    parts: Sequence[Part],
+    notes: Sequence[str],
+    breadth: float,
+    fill_holes: bool | None,
+) -> Merged:
+    """Every piece of a region, in the order of the parts; the first has the notes on all.
+
+    Raises
+    ------
+    TargetError
+        Too many pieces.
+    """
+    apart = [piece for piece in shapely.get_parts(region) if isinstance(piece, Polygon)]
+    least = SPECK_OF_LARGEST * max(piece.area for piece in apart)
+    pieces = [(_part_of(piece, parts), piece) for piece in apart if piece.area > least]
+    if len(pieces) > MOST_SHEETS:
+        raise TargetError("parts.too_many_sheets", pieces=len(pieces), limit=MOST_SHEETS)
+    # Pieces of one part from left to right, as they are read.
+    pieces.sort(key=lambda found: (found[0].number, found[1].bounds[0]))
+    made: list[Merged] = []
+    for name, (_, piece) in zip(_told_apart([part for part, _ in pieces], source.name), pieces, strict=True):
+        made.append(Merged(*_outline(source, piece, () if made else notes, name, breadth, fill_holes)))
+    return replace(made[0], others=tuple(made[1:]))
+
+
+def _told_apart(parts: Sequence[Part], name: str) -> list[str]:
+    """Different names for the pieces of parts: the part's own, or ``name`` of the source."""
+    found: list[str] = []
+    for part in parts:
+        own = part.name if part.is_named else name
+        numbered = (f"{own} {number}" for number in range(2, len(parts) + 2))
+        found.append(own if own not in found else next(one for one in numbered if one not in found))
+    return found
+
+
+def _part_of(piece: Polygon, parts: Sequence[Part]) -> Part:
+    """The part that most of a piece is."""
+    shares = [shapely.area(shapely.intersection(piece, part.region.buffer(0.0))) for part in parts]
+    if max(shares) > 0.0:
+        return parts[int(np.argmax(shares))]
+    lines = [part.region if part.is_closed else shapely.multilinestrings(list(part.lines)) for part in parts]
+    return parts[int(np.argmin([shapely.distance(piece, line) for line in lines]))]
 
 
 def usual_outline(source: SourceParts) -> Outline:

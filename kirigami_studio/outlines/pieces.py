@@ -178,3 +178,22 @@ def has_seen_holes(piece: Polygon, region: BaseGeometry | None = None, breadth: 
     shape = piece.simplify(COARSENESS * unit)
     broad = shape.buffer(-0.5 * breadth * unit).buffer(0.5 * breadth * unit)
     return bool(broad.area >= MOSTLY * shape.area)
+
+
+def lines_within(lines: Sequence[FloatArray], area: BaseGeometry) -> list[FloatArray]:
+    """Parts of lines (P, 2) in an area, in their order; a line that is all in it stays as it is."""
+    if not lines:
+        return []
+    strings = shapely.linestrings(
+        np.concatenate(lines), indices=np.repeat(np.arange(len(lines)), list(map(len, lines)))
+    )
+    shapely.prepare(area)
+    whole = shapely.contains_properly(area, strings)
+    found: list[FloatArray] = []
+    for line, string, is_whole in zip(lines, strings, whole.tolist(), strict=True):
+        if is_whole:
+            found.append(line)
+        elif area.intersects(string):
+            parts = shapely.get_parts(shapely.line_merge(shapely.intersection(string, area)))
+            found += [shapely.get_coordinates(part) for part in parts if part.length > 0.0]
+    return found

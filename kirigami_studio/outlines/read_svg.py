@@ -26,6 +26,7 @@ from kirigami_studio.outlines.parts import (
     parts_of_region,
     stroked,
 )
+from kirigami_studio.outlines.pieces import lines_within
 from kirigami_studio.outlines.source_file import TimeBudget, decoded
 from kirigami_studio.outlines.svg_drawing import PIXELS_PER_MM, WHITE, Drawn, Paint, SvgDrawing, svg_drawing
 from kirigami_studio.outlines.svg_safety import checked_svg
@@ -38,6 +39,8 @@ WIDEST_GAP = 0.02
 FAINT = 0.3
 #: A white rectangle is paper if it covers this share of the page.
 PAPER = 0.9
+#: How many times nearer to its curves than those of an outline the lines of a picture stay: 3 um of 200 mm.
+FINER = 16.0
 
 
 def read_svg(path: str | Path) -> Outline:
@@ -74,6 +77,52 @@ def _parts(path: Path, content: bytes) -> SourceParts:
     unit = "px" if width_mm is None else "mm"
     read = svg_drawing(root, 1.0 if width_mm is None else 1.0 / PIXELS_PER_MM, budget)
     return parts_of_drawing(path.stem, read, unit, budget)
+
+
+def painted_lines(content: bytes, size: tuple[float, float]) -> tuple[FloatArray, ...]:
+    """The lines that an SVG is drawn with: middles of strokes, and edges of areas without one.
+
+    Texts, pictures and a white background have none.
+
+    Parameters
+    ----------
+    content : bytes
+    size : (width, height)
+        That the drawing's page, or its view, is scaled to.
+
+    Returns
+    -------
+    lines : tuple of (P, 2) float
+        Units of ``size``, y down; a closed one repeats its first point.
+
+    Raises
+    ------
+    TargetError
+        As :func:`read_svg`, but for open contours and letters.
+    """
+    budget = TimeBudget()
+    root, _ = checked_svg(content)
+    view = (root.get("viewBox") or "").replace(",", " ").split()
+    if len(view) == 4:  # the page is as large as its view, so that nothing is beside it
+        root.set("width", view[2])
+        root.set("height", view[3])
+    read = svg_drawing(root, 1.0, budget, FINER)
+    refuse_scribbles([chain for shape in read.drawn for chain in shape.chains])
+    if read.page is None or min(read.page) <= 0.0:
+        return ()
+    page = shapely.box(0.0, 0.0, *read.page)
+    drawn, _paper = _without_paper(read.drawn, read.page)
+    scale, found = np.array(size) / read.page, []
+    for shape in drawn:
+        budget.check()
+        closes = shape.stroke is None
+        chains = [
+            np.concatenate([one, one[:1]]) if closes and np.any(one[0] != one[-1]) else one for one in shape.chains
+        ]
+        seen = page if shape.clip is None else page.intersection(shape.clip)
+        lines = lines_within([chain for chain in chains if len(chain) > 1], seen)
+        found += [line * scale for line in lines]
+    return tuple(found)
 
 
 def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget) -> SourceParts:

@@ -22,13 +22,15 @@ FLATNESS = 1.0 / 4000.0
 MOST_COORDINATE = 1e100
 
 
-def flattened(path: Any, matrix: FloatArray) -> list[FloatArray]:
+def flattened(path: Any, matrix: FloatArray, finer: float = 1.0) -> list[FloatArray]:
     """Return the subpaths of an ``svgelements.Path`` as chains of vertices.
 
     Parameters
     ----------
     matrix : (3, 3) float
         From the path to the drawing; curves follow it as their controls do.
+    finer : float
+        How many times nearer to the curves than usual chords stay.
 
     Returns
     -------
@@ -59,7 +61,7 @@ def flattened(path: Any, matrix: FloatArray) -> list[FloatArray]:
     with np.errstate(over="ignore", invalid="ignore"):
         chains = [[controls @ matrix[:2, :2].T + matrix[:2, 2] for controls in chain] for chain in chains]
         corners = np.concatenate([controls for chain in chains for controls in chain])
-    error = FLATNESS * float(np.max(np.ptp(checked(corners), axis=0)))
+    error = FLATNESS / finer * float(np.max(np.ptp(checked(corners), axis=0)))
     segments = [[chain[0], *map(_behind, chain, chain[1:])] for chain in chains]
     if (vertices := sum(_vertices_of(chain, error) for chain in segments)) > MOST_VERTICES:
         raise TargetError("drawing.too_many_vertices", vertices=vertices, limit=MOST_VERTICES)

@@ -117,25 +117,27 @@ class _Frame:
     inside: tuple[Element, ...] = ()  #: clip paths and masks that are being made
 
 
-def svg_drawing(root: Element, scale: float, budget: TimeBudget) -> SvgDrawing:
+def svg_drawing(root: Element, scale: float, budget: TimeBudget, finer: float = 1.0) -> SvgDrawing:
     """Everything painted in a checked document.
 
     Parameters
     ----------
     scale : float
         Drawing units to a pixel.
+    finer : float
+        How many times nearer to curves than usual chords stay.
 
     Raises
     ------
     TargetError
         It takes too long, has coordinates that are no numbers, or far too many curves or rules.
     """
-    return _Painter(root, scale, budget).drawing()
+    return _Painter(root, scale, budget, finer).drawing()
 
 
 class _Painter:
-    def __init__(self, root: Element, scale: float, budget: TimeBudget) -> None:
-        self._root, self._scale, self._budget = root, scale, budget
+    def __init__(self, root: Element, scale: float, budget: TimeBudget, finer: float) -> None:
+        self._root, self._scale, self._budget, self._finer = root, scale, budget, finer
         self._cascade = Cascade(root)
         self._named: dict[str, Element] = {}
         for element in root.iter():
@@ -377,11 +379,11 @@ class _Painter:
             rx, ry = (one if one is not None else other for one, other in (radii, radii[::-1]))
             if rx is None or ry is None or min(rx, ry) <= 0.0:
                 return []
-            angle = np.linspace(0.0, 2.0 * np.pi, ELLIPSE_VERTICES + 1)
+            angle = np.linspace(0.0, 2.0 * np.pi, round(ELLIPSE_VERTICES * np.sqrt(self._finer)) + 1)
             ring = np.column_stack([size.get("cx", 0.0) + rx * np.cos(angle), size.get("cy", 0.0) + ry * np.sin(angle)])
             ring[-1] = ring[0]
             return [checked(_placed(ring, frame.matrix))]
-        return flattened(path, frame.matrix)
+        return flattened(path, frame.matrix, self._finer)
 
     # paint -----------------------------------------------------------------------------------------------------------
 

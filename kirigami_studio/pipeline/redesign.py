@@ -14,14 +14,16 @@ import numpy as np
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate, evaluate_near
 from kirigami_studio.evaluate.second_target import matched_again
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import ShapeMatch, siou_of_many
-from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP
+from kirigami_studio.evaluate.trimming import KEEP, LARGEST_KEEP, Trim, trim
+from kirigami_studio.fabricate.making_room import roomy
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.trimmed_sheet import needed_keep
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
 from kirigami_studio.foundation.threads import one_blas_thread
-from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
@@ -40,6 +42,21 @@ COVER_STEPS = 12
 
 #: Accepted steps of one fit that the user asks for; most end before that because nothing more is gained.
 REFIT_STEPS = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """Room for the connectors of a sheet that is to be trimmed."""
+
+    width_mm: float = 100.0  #: of the flat sheet
+    span_mm: float = 0.0  #: width of a connector and of the cut; 0 where connectors need no room
+
+    def made(self, deployment: Deployment) -> Deployment:
+        """The sheet with that room, as planning makes it for whole ones."""
+        return roomy(deployment, self.width_mm, self.span_mm) if self.span_mm else deployment
+
+
+NO_ROOM = Room()
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,17 +90,36 @@ def sampled(candidate: Candidate, target: Outline) -> Candidate | None:
 
 
 def rescored(candidate: Candidate, sheet: Sheet, target: Outline) -> Candidate:
-    """The candidate with another sheet, changed by hand, near its present pose; a trim belonged to the old sheet."""
+    """The candidate with another sheet, changed by hand, near its present pose; one that is trimmed is trimmed again.
+
+    It is cut as deep as before, and not fitted again.  It loses its trim only where the changed sheet has no outside.
+    """
     with one_blas_thread():
         deployment = deploy(sheet)
         score = evaluate_near(deployment, target, candidate.score.phi, candidate.final_pose)
         second = matched_again(deployment, candidate.second)
-    changed = replace(candidate, sheet=sheet, score=score, polished=False, trim=None, second=second)
+        cut = None if candidate.trim is None else _trimmed_as(candidate.trim, deployment, target, score.transform)
+    changed = replace(candidate, sheet=sheet, score=score, polished=False, trim=cut, second=second)
     return replace(changed, origin=Origin.EDITED)
 
 
+def _trimmed_as(before: Trim, deployment: Deployment, target: Outline, pose: Similarity) -> Trim | None:
+    """Trim a changed sheet where the one before it lay, or in another pose if that matches better."""
+    poses = dict.fromkeys((before.pose, pose))
+    try:
+        cuts = [trim(deployment, target, before.phi, one, before.keep, before.deep) for one in poses]
+    except KirigamiError:
+        return None
+    return max(cuts, key=lambda one: one.iou)
+
+
 def keep_for_connectors(
-    sheet: Sheet, material: Material, width_mm: float, connector_mm: float | None, kerf_mm: float | None
+    sheet: Sheet,
+    material: Material,
+    width_mm: float,
+    connector_mm: float | None,
+    kerf_mm: float | None,
+    least: float = KEEP,
 ) -> float:
     """How deep material has to stay at the hinges of a trimmed sheet so that its connectors hold.
 
@@ -96,6 +132,8 @@ def keep_for_connectors(
         Width of the flat sheet.
     connector_mm, kerf_mm : float or None
         Widths of connectors and of the cut; None for the material's own.
+    least : float, unit cells
+        That stays in any case.
 
     Returns
     -------
@@ -116,7 +154,7 @@ def keep_for_connectors(
             width_mm=width_mm,
             least_mm=math.ceil(width_mm * needed / LARGEST_KEEP),
         )
-    return max(KEEP, needed)
+    return max(least, needed)
 
 
 def kept_symmetry(sheet: Sheet) -> Symmetry | None:
@@ -131,6 +169,7 @@ def trimmed(
     cancel: Callable[[], bool],
     locked: BoolArray | None = None,
     least_panel: float = 0.0,
+    room: Room = NO_ROOM,
 ) -> Trimmed:
     """Fit a candidate so that it covers the target, and trim its edge panels.
 
@@ -146,13 +185,15 @@ def trimmed(
         Voids that keep their ratios.
     least_panel : float, unit cells
         Panel edges and necks before trimming, see :func:`kirigami_studio.polish.levenberg.polish`.
+    room : Room
+        For the connectors.
 
     Raises
     ------
     KirigamiError
         The candidate's outline crosses itself.
     """
-    cover = _cover(candidate, target, keep, cancel, locked, least_panel=least_panel)
+    cover = _cover(candidate, target, keep, cancel, locked, least_panel=least_panel, room=room)
     return Trimmed(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
 
 
@@ -164,12 +205,13 @@ def covered(
     locked: BoolArray | None = None,
     least_panel: float = 0.0,
     even: float = 0.0,
+    room: Room = NO_ROOM,
 ) -> Trimmed:
     """Make a cover of a candidate: a sheet over the target of which parts are cut away.
 
     Parameters
     ----------
-    candidate, target, keep, cancel, locked, least_panel
+    candidate, target, keep, cancel, locked, least_panel, room
         As for :func:`trimmed`.
     even : float
         Weight of even panels.
@@ -184,7 +226,7 @@ def covered(
     KirigamiError
         The candidate's outline crosses itself.
     """
-    cover = _cover(candidate, target, keep, cancel, locked, least_panel=least_panel, even=even, notched=True)
+    cover = _cover(candidate, target, keep, cancel, locked, least_panel=least_panel, even=even, notched=True, room=room)
     with one_blas_thread():
         deployment = deploy(cover.trim.sheet)
         score = evaluate(deployment, target, candidate.score.phi)
@@ -203,9 +245,11 @@ def _cover(
     least_panel: float,
     even: float = 0.0,
     notched: bool = False,
+    room: Room,
 ) -> Cover:
     """Fit a candidate's sheet so that it covers the target, within its own rim and symmetry."""
     sheet, score = candidate.sheet, candidate.score
+    free = locked is None or not locked.any()
     with one_blas_thread():
         return fit_cover(
             sheet,
@@ -217,10 +261,12 @@ def _cover(
             cancel,
             locked,
             free_rim=not sheet.has_even_rim,
-            symmetry=None if locked is not None and locked.any() else kept_symmetry(sheet),
+            symmetry=kept_symmetry(sheet) if free else None,
             even=even,
             least_panel=least_panel,
             notched=notched,
+            # Locked voids keep their ratios, whatever room there is.
+            room=(room if free else NO_ROOM).made,
         )
 
 
@@ -238,6 +284,7 @@ def refitted(
     least_feature_mm: float = 0.0,
     room_mm: float = 0.0,
     least_gap_mm: float = 0.0,
+    span_mm: float = 0.0,
 ) -> Refit:
     """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed.
 
@@ -264,6 +311,8 @@ def refitted(
         Panel edge and neck that leaves connectors their full width.
     least_gap_mm : float
         How far apart the pins of a pinned sheet stay; 0 for others.
+    span_mm : float
+        See :class:`Room`.
 
     Raises
     ------
@@ -278,9 +327,9 @@ def refitted(
     score, preference = candidate.score, PREFERENCES[prefer]
     least = max(least_in_cells(size, width_mm, score.evenness.width) for size in (least_feature_mm, room_mm))
     gap = gap_in_cells(least_gap_mm, width_mm, score.evenness.width)
-    ranking = Ranking(regular, width_mm, least_feature_mm, least_gap_mm)
+    ranking, room = Ranking(regular, width_mm, least_feature_mm, least_gap_mm), Room(width_mm, span_mm)
     if candidate.origin is Origin.COVERED:
-        cover = covered(candidate, target, keep(), cancel, table, least, even_weight(regular)).candidate
+        cover = covered(candidate, target, keep(), cancel, table, least, even_weight(regular), room).candidate
         _stop_if(cancel)
         return Refit(cover, ranking.worth_as_made(cover) > ranking.worth_as_made(candidate))
     with one_blas_thread():
@@ -312,7 +361,7 @@ def refitted(
     if candidate.trim is None:
         return Refit(fitted, better)
     try:
-        again = trimmed(fitted, target, keep(), cancel, table, least)
+        again = trimmed(fitted, target, keep(), cancel, table, least, room)
     except KirigamiError as problem:
         return Refit(fitted, better, problem)
     _stop_if(cancel)

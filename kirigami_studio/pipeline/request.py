@@ -90,6 +90,10 @@ class Request(DesignChoices):
     room_mm: float = field(
         default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_feature_out_of_range").metadata
     )
+    #: >= 0; width of a connector and of the cut, which sheets to be trimmed get room for; 0 where connectors need none
+    span_mm: float = field(
+        default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_feature_out_of_range").metadata
+    )
     #: >= 0; how far apart pins stay, between their centres, of pinned sheets; 0 for others
     least_gap_mm: float = field(
         default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_gap_out_of_range").metadata
@@ -194,8 +198,11 @@ class Request(DesignChoices):
 
     @property
     def trims(self) -> bool:
-        """Whether its best designs are trimmed: where asked for, and for a target with holes."""
-        return self.trim or bool(self.target.holes)
+        """Whether its best designs are trimmed: where asked for, and for a target with holes.
+
+        Pieces on pins are cut by rules of their own.
+        """
+        return self.trim or (bool(self.target.holes) and not self.pinned)
 
     @property
     def pinned(self) -> bool:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.foundation.errors import Cancelled, SheetError
 from kirigami_studio.foundation.steps import never
@@ -157,6 +157,17 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
         yield from work.trim()
     candidates = work.ranking.ranked(work.found)
     yield Finished(Result(request, candidates, work.evaluations, watch.seconds, work.cut_short))
+
+
+def trimmed_further(
+    result: Result, cancel: Callable[[], bool] = never, pool: Pool | None = None
+) -> Generator[Event, None, Result]:
+    """Trim the next designs of a run, where those that it trimmed cannot be cut."""
+    request = result.request
+    work = _Work(request, Watch(cancel, time.perf_counter()), _gaining(pool or shared_pool(), request))
+    work.found, work.evaluations = list(result.candidates), result.forward_evaluations
+    yield from work.trim()
+    return replace(result, candidates=work.ranking.ranked(work.found), forward_evaluations=work.evaluations)
 
 
 def with_grid(request: Request, pool: Pool | None = None) -> Request:
@@ -409,9 +420,9 @@ class _Work:
         yield from self._replaced(chosen, tasks, FINISHING)
 
     def trim(self) -> Iterator[Event]:
-        """Trim the best that differ."""
-        closed = [one for one in self.found if one.trim is None]
-        chosen = worth_a_fit(closed, self.ranking)[:TRIMMED]
+        """Trim the best that differ, also from those that are trimmed already."""
+        closed = [one for one in self.found if one.origin is not Origin.COVERED]
+        chosen = [one for one in worth_a_fit(closed, self.ranking) if one.trim is None][:TRIMMED]
         yield from self._replaced(chosen, [TrimTask(candidate) for candidate in chosen], TRIMMING)
 
     def cover(self) -> Iterator[Event]:

@@ -19,7 +19,7 @@ from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
-from kirigami_studio.pipeline.redesign import covered, kept_symmetry, trimmed
+from kirigami_studio.pipeline.redesign import Room, covered, kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape
 from kirigami_studio.polish.junctions import junction_weight
@@ -188,7 +188,8 @@ class TrimTask:
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Trim, unless the design crosses itself."""
         try:
-            made = trimmed(self.candidate, request.target, request.keep, stopped, least_panel=request.kept_when_trimmed)
+            room = Room(request.width_mm, request.span_mm)
+            made = trimmed(self.candidate, request.target, request.keep, stopped, None, request.kept_when_trimmed, room)
         except KirigamiError:
             return TaskResult(None, 1)
         return TaskResult(made.candidate, made.evaluations)
@@ -205,7 +206,8 @@ class CoverTask:
         least, even, one = request.kept_when_trimmed, request.even, self.candidate
         keep = request.keep if one.trim is None else one.trim.keep
         try:
-            made = covered(one, request.target, keep, stopped, least_panel=least, even=even)
+            room = Room(request.width_mm, request.span_mm)
+            made = covered(one, request.target, keep, stopped, None, least, even, room)
         except KirigamiError:
             return TaskResult(None, 1)
         return TaskResult(made.candidate, made.evaluations)

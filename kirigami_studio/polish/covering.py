@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 import shapely
 
-from kirigami_studio.evaluate.alignment import align
+from kirigami_studio.evaluate.alignment import align, align_near
 from kirigami_studio.evaluate.feasibility import path_contact
 from kirigami_studio.evaluate.kept_panels import GRID, edge_panels
 from kirigami_studio.evaluate.similarity import Similarity
@@ -78,6 +78,7 @@ def fit_cover(
     even: float = 0.0,
     least_panel: float = 0.0,
     notched: bool = False,
+    room: Callable[[Deployment], Deployment] = lambda deployment: deployment,
 ) -> Cover:
     """Fit a polished sheet so that its trimmed silhouette matches best.
 
@@ -101,6 +102,8 @@ def fit_cover(
     notched : bool
         Whether notches that no closed sheet shows are cut out in any case, and the sheet is trimmed after the fit
         alone: for one that was fitted to the target itself, which this one would not be a better trim of.
+    room : callable
+        Makes room for the connectors of a sheet before it is trimmed: afterwards its panels cannot be changed.
 
     Raises
     ------
@@ -111,17 +114,27 @@ def fit_cover(
     """
     phi, keep = check_fit(phi, steps, TRUST), check_keep(keep)
     sheet = Sheet.of(design)
+
+    def trimmed(fit: Fit) -> Cover:
+        before = deploy(fit.sheet)
+        made = room(before)
+        if made is not before and path_contact(made, phi) is None:
+            # Room leaves the silhouette what it is, but neither its place nor its size.
+            moved = align_near(made.outline(phi), before.outline(phi), Similarity())
+            fit = replace(fit, sheet=made.sheet, pose=fit.pose.compose(moved))
+        return cut(fit, target, phi, keep, cancel)
+
     outline = deploy(sheet).outline(phi)
     pose = pose or align(outline, target.points)
-    wanted, place, trimmed = target.filled, Similarity(), _trimmed
+    wanted, place, cut = target.filled, Similarity(), _trimmed
     filled = notches_filled(target.filled, EASY_TURN) if notched else notches_filled(target.filled)
     if filled is not None:
         laid = align(outline, filled.outline.points)
         if notched or exact_iou(laid.apply(outline), filled.outline) > exact_iou(pose.apply(outline), target.filled):
-            wanted, place, trimmed = filled.outline, filled.frame, _trimmed_deep
+            wanted, place, cut = filled.outline, filled.frame, _trimmed_deep
             pose = place.compose(laid)
     first = Fit(sheet, pose, 0.0, 0, 0)
-    best = None if notched else trimmed(first, target, phi, keep, cancel)
+    best = None if notched else trimmed(first)
     fit = polish(
         sheet,
         wanted,
@@ -139,10 +152,10 @@ def fit_cover(
     )
     fit = replace(fit, pose=place.compose(fit.pose))
     if fit.steps and path_contact(deploy(fit.sheet), phi) is None and not cancel():
-        other = trimmed(fit, target, phi, keep, cancel)
+        other = trimmed(fit)
         if best is None or other.trim.iou > best.trim.iou:
             best = other
-    return best or trimmed(first, target, phi, keep, cancel)
+    return best or trimmed(first)
 
 
 @lru_cache(maxsize=16)

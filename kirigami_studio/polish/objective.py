@@ -5,7 +5,8 @@ Residuals, all in unit-area lengths and weighted by the boundary length that the
 * from points on every layout edge to the target boundary (nothing may stick out),
 * from even samples of the target boundary to the layout (nothing may be missed),
 
-down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Beside them:
+down-weighted beyond a trusted distance so that their sum grows like an area and not like its square.  Where the start
+is not the paper's rectangle, vertices that stick out count beside that: horns.  Beside them:
 terms on z, see ``preferences``; penalties on panels too small to cut, see ``panel_size``, on pins too near to each
 other, see ``pinwheel``, and on long chords of a round start, see ``chords``; and, where a phase of the fit asks for
 them, even panels, see ``even_panels``, none large, see ``large_panels``, a transport map of the inside, see
@@ -31,7 +32,7 @@ from kirigami_studio.polish.chords import Chords
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.junctions import OPEN, JunctionAngles, junctions
 from kirigami_studio.polish.large_panels import LARGE, PanelAreas, panel_areas
-from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched, outer_hinges
+from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched
 from kirigami_studio.polish.normal_equations import Quadratic
 from kirigami_studio.polish.panel_size import PENALTY, shortage
 from kirigami_studio.polish.pin_room import PinRoom, pin_room
@@ -139,9 +140,11 @@ class Objective:
         self._each_large = 0.0
         if self.even is not None:
             self._each_large = phase.even * self.even.large / ((model.rows + 1) * (model.columns + 1))
-        self.one_sided = None
+        self.one_sided, layout = None, (model.rows, model.columns, model.phi)
         if check_excess(excess) < 1.0:
-            self.one_sided = OneSided(excess, outer_hinges(model.rows, model.columns, model.phi))
+            self.one_sided = OneSided.trimmed(excess, *layout)
+        elif model.has_start:
+            self.one_sided = OneSided.without_horns(*layout)
 
     def look(self, state: FloatArray) -> Look:
         """Decode a state, match it with the target and count the cost."""

@@ -173,6 +173,7 @@ class OutlineModel:
     ) -> None:
         self.rows, self.columns, self.phi, self.free_rim = rows, columns, phi, free_rim
         self._start, self._cell = start, cell
+        self.has_start = start is not None  #: Whether it is not the paper's rectangle
         self._path, self._table = RimPath(rows, columns, start, cell), rim_table(rows, columns)
         self._rim = rim or Rim.even(rows, columns)
         self._plan = _plan(rows, columns, phi < ZIPPED_BELOW)

@@ -9,13 +9,17 @@ import io
 import json
 from collections.abc import Mapping
 
+import numpy as np
 from PIL import Image
 
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid, PictureFit, SheetState
+from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError
 from kirigami_studio.project.json_record import Record, one_of, read_json
 
 RECORD = "artwork.json"
+#: Decimals of lines, pixels.
+DECIMALS = 3
 #: Members that pictures may be stored as.
 PICTURES = ("artwork.png", "artwork.jpg", "artwork2.png", "artwork2.jpg")
 
@@ -33,11 +37,13 @@ def artwork_members(artwork: Artwork | None) -> dict[str, bytes]:
         "scale": laid.scale,
         "turn": laid.turn,
         "shift": list(laid.shift),
+        **_lines_record(laid.picture),
     }
     pictures = {f"artwork{laid.picture.extension}": laid.picture.content}
     if artwork.second is not None:
         member = f"artwork2{artwork.second.extension}"
-        record |= {"second": {"name": artwork.second.name, "picture": member}, "stripes": artwork.stripes}
+        second = {"name": artwork.second.name, "picture": member, **_lines_record(artwork.second)}
+        record |= {"second": second, "stripes": artwork.stripes}
         pictures[member] = artwork.second.content
     return {RECORD: json.dumps(record, indent=1).encode(), **pictures}
 
@@ -65,8 +71,25 @@ def artwork_of(members: Mapping[str, bytes]) -> Artwork | None:
         if not record.holds("second"):
             return Artwork(laid)
         return Artwork(laid, _picture(record.record("second"), members), record.whole("stripes"))
-    except (KirigamiError, OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+    except (KirigamiError, OSError, ValueError, TypeError, SyntaxError, Image.DecompressionBombError) as error:
         raise ProjectError("artwork.left_out", reason=error) from error
+
+
+def _lines_record(picture: ArtPicture) -> dict[str, object]:
+    """The lines of a picture, x and y of one point after the other."""
+    if not picture.lines:
+        return {}
+    return {"lines": [(line.round(DECIMALS) + 0.0).ravel().tolist() for line in picture.lines]}
+
+
+def _lines(record: Record) -> tuple[FloatArray, ...]:
+    """The lines that a record has."""
+    if not record.holds("lines"):
+        return ()
+    found = tuple(np.array(line, dtype=np.float64) for line in record.list("lines"))
+    if any(line.ndim != 1 or len(line) < 4 or len(line) % 2 or not np.isfinite(line).all() for line in found):
+        raise ProjectError("json.not_a_number", place=f"{RECORD}.lines", value=record.list("lines"))
+    return tuple(line.reshape(-1, 2) for line in found)
 
 
 def _picture(record: Record, members: Mapping[str, bytes]) -> ArtPicture:
@@ -75,4 +98,4 @@ def _picture(record: Record, members: Mapping[str, bytes]) -> ArtPicture:
     if member not in PICTURES or member not in members:
         raise ProjectError("project.member_missing", name=member)
     with Image.open(io.BytesIO(members[member]), formats=("PNG", "JPEG")) as image:
-        return ArtPicture(record.text("name"), members[member], image.size)
+        return ArtPicture(record.text("name"), members[member], image.size, _lines(record))

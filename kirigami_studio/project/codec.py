@@ -31,7 +31,7 @@ from kirigami_studio.outlines.drawing import NO_GUIDES, Guides
 from kirigami_studio.outlines.nodes import Kind, Nodes
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
-from kirigami_studio.project.document import Document, Mark, Void
+from kirigami_studio.project.document import MOST_PARTS, Document, Mark, Void
 from kirigami_studio.project.json_record import Record, one_of, read_json, settings_json, settings_values
 from kirigami_studio.project.labels import Label
 from kirigami_studio.project.migrations import Members
@@ -40,12 +40,22 @@ from kirigami_studio.settings.fabrication import FabricationSettings
 
 DESIGN = "design.json"
 RATIOS = "ratios.npy"
+#: Members of the other parts of a target, numbered from 1 on.
+PART = "part-{number}-{name}"
 #: Ratios as they were sampled, of those candidates that a fit has improved, in the candidates' order.
 SAMPLED = "sampled.npy"
 
 
 def encode(document: Document) -> dict[str, bytes]:
     """Return the members of the current format; equal documents give equal bytes."""
+    found = _members(document)
+    for number, part in enumerate(document.other_parts, start=1):
+        found |= {PART.format(number=number, name=name): content for name, content in _members(part).items()}
+    return found
+
+
+def _members(document: Document) -> dict[str, bytes]:
+    """The members of a document without the other parts of its target."""
     runs = list(dict.fromkeys(entry.made_with for entry in document.candidates if entry.made_with))
     seconds = list(dict.fromkeys(_second_targets(document)))
     design = {
@@ -65,6 +75,9 @@ def encode(document: Document) -> dict[str, bytes]:
         "labels": [asdict(label) for label in document.labels],
         "naming_runs": document.runs,
         "locked": [list(void) for void in sorted(document.locked)],
+        # Not there for a target of one part, so that such projects stay as they were.
+        **({"parts": {"others": len(document.other_parts), "at": document.part}} if document.other_parts else {}),
+        **({} if document.place is None else {"place": list(document.place)}),
     }
     members = {DESIGN: json.dumps(design, indent=1, allow_nan=False).encode()}
     sampled = [entry.sampled_sheet for entry in document.candidates if entry.sampled_sheet is not None]
@@ -85,9 +98,29 @@ def decode(members: Members) -> Document:
     KirigamiError
         A member is missing or holds what no document can hold.
     """
+    document, others, at = _document(members)
+    parts = []
+    for number in range(1, others + 1):
+        start = PART.format(number=number, name="")
+        own = {name.removeprefix(start): content for name, content in members.items() if name.startswith(start)}
+        part, more, _ = _document(own)
+        if more:
+            raise ProjectError("project.part_without_target")
+        parts.append(part)
+    return replace(document, other_parts=tuple(parts), part=at) if parts else document
+
+
+def _document(members: Members) -> tuple[Document, int, int]:
+    """A document without the other parts of its target, their number, and its place among all."""
     if DESIGN not in members:
         raise ProjectError("project.member_missing", name=DESIGN)
     design = Record(read_json(members[DESIGN], DESIGN), DESIGN)
+    others, at = 0, 0
+    if design.holds("parts"):
+        among = design.record("parts")
+        others, at = among.whole("others"), among.whole("at")
+        if not 0 <= others < MOST_PARTS:
+            raise ProjectError("project.no_such_part", number=at, parts=others + 1, limit=MOST_PARTS)
     settings = design.record("settings")
     entries = design.list("candidates")
     records = [Record(entry, f"{DESIGN}.candidates[{k}]") for k, entry in enumerate(entries)]
@@ -105,7 +138,7 @@ def decode(members: Members) -> Document:
         )
         for record, field in zip(records, fields, strict=True)
     ]
-    return Document(
+    found = Document(
         target=target,
         drawing=_drawing(design),
         guides=_guides(design),
@@ -123,7 +156,9 @@ def decode(members: Members) -> Document:
         labels=tuple(_label(entry, k) for k, entry in enumerate(design.list("labels"))),
         runs=design.whole("naming_runs"),
         locked=frozenset(_void(entry) for entry in design.list("locked")),
+        place=design.pair("place") if design.holds("place") else None,
     )
+    return found, others, at
 
 
 def _settings_json(settings: DesignSettings, seconds: list[SecondTarget]) -> dict[str, object]:

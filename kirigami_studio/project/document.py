@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -18,6 +19,8 @@ from kirigami_studio.settings.fabrication import FabricationSettings
 
 #: Guides lie within this distance of the middle of the board, mm, and there are no more of them along one axis.
 FARTHEST_GUIDE, MOST_GUIDES = 1e6, 1000
+#: Parts of one target, each a sheet of its own.
+MOST_PARTS = 24
 #: A void by its row and column.
 Void = tuple[int, int]
 
@@ -38,7 +41,8 @@ class Document:
     ------
     ProjectError
         Candidates without a target or of different grids, a choice that is not among them, more or fewer marks or
-        labels than candidates, a locked void that their grid does not have, or guides that no board has.
+        labels than candidates, a locked void that their grid does not have, guides that no board has, or parts without
+        a target.
     """
 
     target: Outline | None = None
@@ -59,6 +63,11 @@ class Document:
     guides: Guides = NO_GUIDES  #: mm; of the drawing board: x of the upright ones and y of the level ones, ascending
     labels: tuple[Label, ...] = ()  #: name and note of each candidate; left out, they are named as those of one run
     runs: int = 0  #: how many runs have named designs; the next one begins with another letter
+    #: The other parts of a target of several separate pieces, each with its designs and without others, in order.
+    other_parts: tuple[Document, ...] = ()
+    part: int = 0  #: place of this one among all parts
+    #: (x, y); area centroid of this part in the drawing of all, in the unit of the target's size, y up.
+    place: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "candidates", tuple(self.candidates))
@@ -82,6 +91,7 @@ class Document:
             raise ProjectError("project.no_such_design", index=self.chosen, designs=count)
         self._check_marks(count)
         self._check_labels(count)
+        self._check_parts()
 
     def _check_marks(self, count: int) -> None:
         marks = tuple(self.marks) or (Mark.NONE,) * count
@@ -109,6 +119,22 @@ class Document:
         if len(labels) != count:
             raise ProjectError("project.labels_do_not_match", labels=len(labels), designs=count)
         object.__setattr__(self, "labels", labels)
+
+    def _check_parts(self) -> None:
+        others = tuple(self.other_parts)
+        object.__setattr__(self, "other_parts", others)
+        if not (isinstance(self.part, int) and 0 <= self.part <= len(others) < MOST_PARTS):
+            raise ProjectError("project.no_such_part", number=self.part, parts=len(others) + 1, limit=MOST_PARTS)
+        if others and (self.target is None or any(one.target is None or one.other_parts for one in others)):
+            raise ProjectError("project.part_without_target")
+        if self.place is not None and not all(math.isfinite(value) for value in self.place):
+            raise ProjectError("project.part_nowhere", x=self.place[0], y=self.place[1])
+
+    @property
+    def parts(self) -> tuple[Document, ...]:
+        """All parts of the target as they were left, this one among them."""
+        alone = replace(self, other_parts=(), part=0) if self.other_parts else self
+        return (*self.other_parts[: self.part], alone, *self.other_parts[self.part :])
 
     @property
     def drawn_by_hand(self) -> bool:

@@ -55,6 +55,8 @@ class LaidChange(TypedDict, total=False):
     shift: tuple[float, float]
 
 
+#: What a document says of parts of its target whose target has none.
+ALONE: dict[str, Any] = {"other_parts": (), "part": 0, "place": None}
 #: Settings that change others with them.
 BRINGING_OTHERS = ("machine", "material")
 #: What the Undo menu says of a change to a setting that has no words of its own for it.
@@ -65,7 +67,7 @@ DECIMALS = 4
 
 def set_target(document: Document, target: Outline) -> Edit:
     """Take another target; the designs of the old one go.  A size in mm is that of the opened shape."""
-    changed = without_designs(as_drawn(document, target), target)
+    changed = replace(without_designs(as_drawn(document, target), target), **ALONE)
     return Edit(tr("Set target {name}", name=target.name), changed)
 
 

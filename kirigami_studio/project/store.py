@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import re
 import zipfile
 import zlib
 from dataclasses import dataclass, replace
@@ -21,7 +22,8 @@ from kirigami_studio.foundation.files import read_at_most, write_atomically
 from kirigami_studio.project import migrations
 from kirigami_studio.project.artwork_record import PICTURES, artwork_members, artwork_of
 from kirigami_studio.project.codec import decode, encode
-from kirigami_studio.project.document import Document
+from kirigami_studio.project.document import MOST_PARTS, Document
+from kirigami_studio.project.edits import ALONE
 from kirigami_studio.project.json_record import Record, read_json
 from kirigami_studio.project.migrations import Members, migrate
 from kirigami_studio.project.picture_record import TracedPicture, picture_members, picture_of
@@ -37,6 +39,8 @@ FORMAT = "kirigami-studio project"
 LARGEST_FILE = 64 * 2**20
 LARGEST_CONTENT = 128 * 2**20
 MOST_MEMBERS = 16
+#: Members of other parts of the target are counted by themselves: each part has its design and two arrays.
+OF_A_PART, MOST_OF_PARTS = re.compile(r"part-\d{1,3}-[a-z.]{1,16}"), 3 * (MOST_PARTS - 1)
 #: The zip format's first day: the same document gives the same bytes on every day.
 _FIXED_DATE = (1980, 1, 1, 0, 0, 0)
 
@@ -114,10 +118,22 @@ def pack(document: Document, picture: TracedPicture | None = None) -> bytes:
 
 def packed_design(document: Document, candidate: Candidate) -> bytes:
     """The project with this design alone, chosen, as a cut file carries it; without pictures."""
+    return pack(with_stored_values(replace(_alone(document, candidate), **ALONE)))
+
+
+def packed_designs(document: Document) -> bytes:
+    """The same with the chosen design of every part of the target."""
+    parts = [part if part.candidate is None else _alone(part, part.candidate) for part in document.parts]
+    number = document.part
+    others = (*parts[:number], *parts[number + 1 :])
+    return pack(with_stored_values(replace(parts[number], other_parts=others, part=number)))
+
+
+def _alone(document: Document, candidate: Candidate) -> Document:
+    """The document with one design, chosen, and no picture."""
     label = document.label_of(candidate)
     labels = () if label is None else (label,)
-    alone = replace(document, candidates=(candidate,), chosen=0, marks=(), labels=labels, artwork=None)
-    return pack(with_stored_values(alone))
+    return replace(document, candidates=(candidate,), chosen=0, marks=(), labels=labels, artwork=None)
 
 
 def load(path: Path | str) -> Document:
@@ -194,7 +210,8 @@ def _unpack(content: bytes) -> Members:
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             entries = archive.infolist()
-            if len(entries) > MOST_MEMBERS:
+            of_parts = sum(OF_A_PART.fullmatch(entry.filename) is not None for entry in entries)
+            if len(entries) - of_parts > MOST_MEMBERS or of_parts > MOST_OF_PARTS:
                 raise ProjectError("project.too_many_members", members=len(entries), limit=MOST_MEMBERS)
             for entry in entries:
                 members[entry.filename] = _read_member(archive, entry, budget)

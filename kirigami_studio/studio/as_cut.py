@@ -57,7 +57,7 @@ from kirigami_studio.mechanics.connectors import (
     tip_asides,
 )
 from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
-from kirigami_studio.mechanics.gripping import panels_to_pin
+from kirigami_studio.mechanics.gripping import SoftMotions
 from kirigami_studio.mechanics.path_contacts import contacts_on_way
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
@@ -390,8 +390,8 @@ def estimate(
     return _made(jam, phi, outcome, largest, judged, Source.ESTIMATE)
 
 
-def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tuple[int, int]:
-    """Panels to hold and to pull: where the softest motions of a pinned sheet are largest.
+def grips_on_pins(deployment: Deployment, settings: FabricationSettings, among: Sequence[int]) -> tuple[int, int]:
+    """Panels to hold and to pull: where the softest motions of a pinned sheet are largest, of some panels.
 
     Pins bend nothing and leave one motion, so that one of each is enough.
 
@@ -400,8 +400,35 @@ def grips_on_pins(deployment: Deployment, settings: FabricationSettings) -> tupl
     FabricationError
         No such material.
     """
+    held, pulled = motions_on_pins(deployment, settings).order(2, among)
+    return held, pulled
+
+
+def motions_on_pins(deployment: Deployment, settings: FabricationSettings) -> SoftMotions:
+    """The softest motions of a pinned sheet, by which grips and drives are chosen.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
     sheet = _unplanned_sheet(deployment, settings, material_for(settings))
-    held, pulled = panels_to_pin(deployment, sheet, settings.width_mm, 2)
+    return SoftMotions.of(deployment, sheet, settings.width_mm, 2)
+
+
+def grips_on_tiles(
+    candidate: Candidate, deployment: Deployment, plan: CutPlan, width_mm: float, tiles: Sequence[int]
+) -> tuple[int, int]:
+    """Panels with tiles to hold and to pull first, as the search for grips begins.
+
+    Raises
+    ------
+    MechanicsError
+        Panels that do not hang together.
+    """
+    kept, made = None if candidate.trim is None else candidate.trim.kept, plan.cut_from(deployment)
+    motions = SoftMotions.for_grips(made, planned_sheet(made, plan, width_mm, kept), width_mm)
+    held, pulled = motions.order(2, tiles)
     return held, pulled
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 from shapely.errors import GEOSException
 
@@ -31,7 +32,7 @@ from kirigami_studio.settings.fabrication import (
     material_for,
     pin_sizes,
 )
-from kirigami_studio.studio.as_cut import AsCut, motion_on_pins
+from kirigami_studio.studio.as_cut import AsCut, motion_on_pins, motions_on_pins
 from kirigami_studio.studio.cutting import kerf_mm
 
 #: Weight of the target against the flat outline: pieces stick out of that one for it where it has area to spare.
@@ -108,7 +109,7 @@ def assembled(
     Parameters
     ----------
     candidate : Candidate
-        What trimming took of it is not looked at: pieces are trimmed by rules of their own.
+        Of a trim only the panels count that a cover gives up: pieces are trimmed by rules of their own.
     settings : FabricationSettings
     target : Outline
     only_whole : bool
@@ -117,19 +118,17 @@ def assembled(
     Raises
     ------
     FabricationError
-        No such material, a target with holes, or pieces that cannot be made, or fall apart where only whole ones are
+        No such material, or pieces that cannot be made, or fall apart where only whole ones are
         wanted.
     UsageError
         An ear that is no wider than its hole.
     """
-    if target.holes:
-        raise FabricationError("pinned.target_has_holes", count=len(target.holes))
     options, hold = pin_options(settings), hold_options(settings)
     machine = machine_for(settings) if options.in_one_plane else None
     key = (candidate, target, settings.width_mm, options, machine, hold, settings.moved_by)
     made = _KEPT.pop(key, None)
     if made is None:
-        design = PosedDesign(deploy(candidate.sheet), candidate.score.transform, candidate.score.phi)
+        design = _posed(candidate)
         try:
             plan = pinned(design, target, settings.width_mm, options, only_whole)
             report = check_pinned(plan)
@@ -140,13 +139,22 @@ def assembled(
         except GEOSException as error:  # floating point ended the geometry of this one design
             raise FabricationError("pinned.not_made", reason=error) from error
         plan = replace(plan, assembly=with_places(plan.assembly, places.places))
-        drive, refused = driven(plan, settings.moved_by if machine is None else DriveKind.NONE)
+        moved_by = settings.moved_by if machine is None else DriveKind.NONE
+        drive, refused = driven(plan, moved_by, partial(motions_on_pins, plan.assembly.deployment, settings))
         report = replace(report, problems=(*report.problems, *places.problems, *refused))
         made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match), places, drive)
     _KEPT[key] = made
     while len(_KEPT) > MOST_KEPT:
         _KEPT.popitem(last=False)
     return made
+
+
+def _posed(candidate: Candidate) -> PosedDesign:
+    """The design over its target: a cover with its trim, others as they were before it."""
+    trim = candidate.trim
+    if trim is not None and trim.sheet == candidate.sheet:
+        return PosedDesign(deploy(trim.sheet), trim.pose, trim.phi, trim)
+    return PosedDesign(deploy(candidate.sheet), candidate.score.transform, candidate.score.phi)
 
 
 def beyond_the_bed(made: Assembled, settings: FabricationSettings) -> list[Problem]:

@@ -8,11 +8,13 @@ from itertools import chain
 from pathlib import Path
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.bed_files import bed_project
 from kirigami_studio.export.dxf_check import FileReport, check_file
 from kirigami_studio.export.file_record import FileRecord, PieceRecord
 from kirigami_studio.export.layer_files import layer_paths
 from kirigami_studio.export.provenance import ONE_SHEET
-from kirigami_studio.export.verification import Verification, verify_export
+from kirigami_studio.export.sheet_bed import BedSheet, SheetBed
+from kirigami_studio.export.verification import Verification, verify_bed, verify_export
 from kirigami_studio.fabricate.cut_plan import design_hash
 from kirigami_studio.fabricate.fastener import Fastener
 from kirigami_studio.fabricate.findings import Note, Problem
@@ -23,6 +25,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
+from kirigami_studio.project.target_parts import parts_as_cut
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     named_machine,
@@ -30,7 +33,7 @@ from kirigami_studio.settings.fabrication import (
     stored_material,
 )
 from kirigami_studio.studio.making import CutRequest, closed, jam_of, judged, pieces_of, planned
-from kirigami_studio.studio.verdict import Level, Verdict, judge_assembled, refused
+from kirigami_studio.studio.verdict import RANK, Level, Verdict, judge_assembled, refused
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,6 +57,8 @@ class Checked:
     @property
     def said(self) -> Level | None:
         """The verdict of the export, as the file has it."""
+        if self.report.sheets:  # all sheets of a bed have the same
+            return replace(self, report=self.report.sheets[0]).said
         record = self.report.record or self.report.of_pieces
         return None if record is None or not record.verdict else Level(record.verdict)
 
@@ -62,6 +67,9 @@ class Checked:
         """Lines on the file itself, on its making, and on the verdict of its export."""
         report, record = self.report, self.report.record
         found = []
+        if report.sheets:
+            record = report.sheets[0].record
+            found.append(tr_n("{count} sheet on this bed", "{count} sheets on this bed", len(report.sheets)))
         if report.pieces is not None and report.min_ligament_mm is not None:
             found.append(
                 tr_n(
@@ -151,6 +159,8 @@ def checked(path: Path, document: Document | None = None) -> Checked:
         return Checked(report)
     if _is_backed(report):
         return _checked_backed([report], document)[0]
+    if report.sheets:
+        return _checked_sheets(report, document)
     if report.of_pieces is not None:
         return _checked_beds([report], document)[0]
     request, unlike = _request(report.record, path, document)
@@ -166,6 +176,42 @@ def checked(path: Path, document: Document | None = None) -> Checked:
         return Checked(report, None, refused(error))
     verdict = judged(request, made, as_cut, [found])
     return Checked(report, found, replace(verdict, problems=(*unlike, *verdict.problems)))
+
+
+def _checked_sheets(report: FileReport, document: Document) -> Checked:
+    """Compare every sheet of a bed with its design; the verdict is that on the worst."""
+    parts, unlike = parts_as_cut(document), tuple[Problem, ...]()
+    requests: list[CutRequest] = []
+    for sheet in report.sheets:
+        design = "" if sheet.record is None else sheet.record.design
+        own = next((part for part in parts if _design_of(part, design) is not None), parts[document.part])
+        request, others = _request(sheet.record, report.path, own)
+        requests.append(request)
+        unlike = (*unlike, *(problem for problem in others if problem not in unlike))
+    try:
+        made = [planned(request) for request in requests]
+    except FabricationError as error:
+        return Checked(report, None, refused(error))
+    as_cut = [closed(request, one) for request, one in zip(requests, made, strict=True)]
+    sheets = [
+        BedSheet(one.plan, request.deployment, jam_of(jam))
+        for request, one, jam in zip(requests, made, as_cut, strict=True)
+    ]
+    places = [sheet.place for sheet in report.sheets if sheet.place is not None]
+    if len(places) < len(sheets):
+        problem = Problem.error("cut_file.sheets_differ", promised=len(sheets))
+        return Checked(replace(report, problems=(*report.problems, problem)))
+    bed = SheetBed(tuple(sheets), tuple(places), 1, 1, tuple(range(len(sheets))))
+    profile = requests[0].settings.profile
+    project = bed_project(bed, "") if report.path.suffix.lower() == ".lbrn2" else b""
+    found = verify_bed(bed, report.path, profile, None, project)
+    verdicts = [
+        judged(request, one, jam, [verification])
+        for request, one, jam, verification in zip(requests, made, as_cut, found, strict=True)
+    ]
+    worst = max(range(len(found)), key=lambda number: RANK[verdicts[number].level])
+    verdict = verdicts[worst]
+    return Checked(report, found[worst], replace(verdict, problems=(*unlike, *verdict.problems)))
 
 
 def checked_together(paths: Sequence[Path], document: Document | None = None) -> tuple[Checked, ...]:

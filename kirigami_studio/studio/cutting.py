@@ -18,7 +18,7 @@ from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.findings import Note, Severity
 from kirigami_studio.fabricate.hold import HoldKind
 from kirigami_studio.fabricate.material import Material
-from kirigami_studio.fabricate.options import CutOptions
+from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.fabricate.tiles import TileSizes
 from kirigami_studio.foundation.arrays import FloatArray
@@ -189,6 +189,21 @@ def room_mm(settings: FabricationSettings) -> float:
     cut = hinge_layer(settings)
     material = material_for(cut)
     return ROOM_IN_WIDTHS * _connector_mm(cut, material) + kerf_mm(cut, material)
+
+
+def span_mm(settings: FabricationSettings) -> float:
+    """Width of a connector and of the cut, where connectors need room for their bows; 0 for others.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    cut = hinge_layer(settings)
+    if cut.options.style is not ConnectorStyle.CENTRED:
+        return 0.0
+    material = material_for(cut)
+    return _connector_mm(cut, material) + kerf_mm(cut, material)
 
 
 def _connector_mm(settings: FabricationSettings, material: Material) -> float:

@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kirigami_studio.evaluate.candidate import Candidate, Family
 from kirigami_studio.evaluate.posed_design import trimmed_parts
+from kirigami_studio.evaluate.trimming import HOLE_KEEP, KEEP
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
@@ -27,8 +28,8 @@ from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.symmetry import symmetry_of
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.starts import RECTANGLE, TURNS_BACK, StartShape, no_closed_sheet_shows
-from kirigami_studio.outlines.turning import turn_back
+from kirigami_studio.outlines.starts import RECTANGLE, TURNS_BACK, StartShape, hollows
+from kirigami_studio.outlines.turning import sides_needed, turn_back
 from kirigami_studio.pipeline.best_as_cut import Looking, best_as_cut
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished, Progress, Result
 from kirigami_studio.pipeline.pool import Pool
@@ -43,11 +44,28 @@ from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings, is_printed, material_for, pin_gap_mm
 from kirigami_studio.settings.layers import hinge_layer
 from kirigami_studio.studio import importing
-from kirigami_studio.studio.cutting import least_feature_mm, room_mm
+from kirigami_studio.studio.cutting import least_feature_mm, room_mm, span_mm
 
 if TYPE_CHECKING:
     from kirigami_studio.studio.as_cut import AsCut
 
+#: Notes on what keeps closed sheets from showing a target, by the families that there are designs of.
+_LIMITS = {
+    "covers.turns_back": {
+        frozenset[Family](): "covers.turns_back_ahead",
+        frozenset({Family.CLOSED}): "covers.turns_back_closed",
+        frozenset({Family.COVER}): "covers.turns_back_cover",
+        frozenset(Family): "covers.turns_back",
+    },
+    "covers.many_arms": {
+        frozenset[Family](): "covers.many_arms_ahead",
+        frozenset({Family.CLOSED}): "covers.many_arms_closed",
+        frozenset({Family.COVER}): "covers.many_arms_cover",
+        frozenset(Family): "covers.many_arms",
+    },
+}
+#: Target angles up to this are those of a closed sheet, radians.
+CLOSED = 1e-9
 #: Designs that are estimated as cut between two reports.
 ESTIMATED_AT_ONCE = 8
 
@@ -125,6 +143,8 @@ class StartChosen:
     reason: str
 
 
+#: How often other designs are trimmed, where none that is trimmed can be cut.
+TRIMMED_FURTHER = 2
 #: What a run reports.
 RunReport = Event | ModelFound | GridChosen | StartChosen | Decoded
 #: What fitting designs again reports.
@@ -156,9 +176,6 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
-    gap_mm = pin_gap_mm(cut)
-    if gap_mm and target.holes:
-        raise FabricationError("pinned.target_has_holes", count=len(target.holes))
     return Request.of(
         target,
         wanted,
@@ -167,8 +184,9 @@ def request_for(
         width_mm=cut.width_mm,
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
         room_mm=sizes_of(cut)[1],
-        least_gap_mm=gap_mm,
-        upright=gap_mm > 0.0 and not is_printed(cut),
+        span_mm=_span_of(cut),
+        least_gap_mm=pin_gap_mm(cut),
+        upright=pin_gap_mm(cut) > 0.0 and not is_printed(cut),
     )
 
 
@@ -207,7 +225,7 @@ def run_design(
     Cancelled
         ``cancel`` returned true.
     """
-    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, with_grid
+    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, trimmed_further, with_grid
 
     if request.start.is_auto and request.near is None:
         chosen = start_choice(request)
@@ -227,7 +245,20 @@ def run_design(
             new = distinct(result.candidates, beside)
             result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
         result = yield from ranked_as_cut(result, cut, beside, cancel)
+        for _ in range(TRIMMED_FURTHER):
+            if not wants_other_trims(result):
+                break
+            result = yield from trimmed_further(result, cancel, pool)
+            result = yield from ranked_as_cut(result, cut, beside, cancel)
         yield Finished(result)
+
+
+def wants_other_trims(result: Result) -> bool:
+    """Whether designs are to be trimmed that are not yet, as none of those that are can be cut."""
+    asked = result.request.trims and result.request.budget_seconds is None
+    trimmed = [one for one in result.candidates if one.trim is not None]
+    feasible = any(one.trim is None and one.score.feasible for one in result.candidates)
+    return asked and bool(trimmed) and feasible and all(one in result.refusals for one in trimmed)
 
 
 def why_untrimmed(result: Result) -> Note | None:
@@ -253,23 +284,94 @@ def why_covered(candidates: Sequence[Candidate], target: Outline | None, start: 
     Note or None
         None without a target, and where there are designs of one family alone.
     """
+    best = _best_of_families(candidates)
+    if target is None or len(best) < len(Family):
+        return None
+    return closed_limit(candidates, target, start) or Note.of("covers.better", **_figures(best))
+
+
+def closed_limit(candidates: Sequence[Candidate], target: Outline | None, start: StartShape = RECTANGLE) -> Note | None:
+    """Limit of closed sheets for a target, with the most that each family has found.
+
+    Returns
+    -------
+    Note or None
+        None without a target, and where nothing stands against a closed sheet.
+    """
+    if target is None or any(one.score.phi > CLOSED for one in candidates) or not _is_convex(start):
+        return None
+    limit = _limit(target, _sides(candidates, start))
+    if limit is None:
+        return None
+    code, facts = limit
+    best = _best_of_families(candidates)
+    return Note.of(_LIMITS[code][frozenset(best)], **facts, **_figures(best))
+
+
+def limit_of(document: Document) -> Note | None:
+    """Note beside the match of a project's designs: the limit of closed sheets, or of covers.
+
+    Pieces on pins are extended beyond their sheet, so what that cannot show says nothing of them.
+    """
+    opens = not document.candidates and document.settings.phi > CLOSED
+    if opens or pin_gap_mm(document.fabrication):
+        return None
+    return _said(document.candidates, document.target, document.settings.start)
+
+
+def limit_of_run(result: Result) -> Note | None:
+    """The same of the designs of a run."""
+    request = result.request
+    return None if request.least_gap_mm else _said(result.candidates, request.target, request.start)
+
+
+def _said(candidates: Sequence[Candidate], target: Outline | None, start: StartShape) -> Note | None:
+    return why_covered(candidates, target, start) or closed_limit(candidates, target, start)
+
+
+def _best_of_families(candidates: Sequence[Candidate]) -> dict[Family, Candidate]:
+    """The best match of each family, of designs that can be closed."""
     best: dict[Family, Candidate] = {}
     for one in candidates:
         if one.score.feasible and (one.family not in best or one.match > best[one.family].match):
             best[one.family] = one
-    if target is None or len(best) < len(Family):
-        return None
-    closed, cover = best[Family.CLOSED], best[Family.COVER]
-    figures = {"closed": 100.0 * closed.match, "cover": 100.0 * cover.match, "given_up": 100.0 * cover.given_up}
+    return best
+
+
+def _figures(best: Mapping[Family, Candidate]) -> dict[str, float]:
+    """Match of each family, and what covers give up, in percent."""
+    figures = {family.value: 100.0 * one.match for family, one in best.items()}
+    if Family.COVER in best:
+        figures["given_up"] = 100.0 * best[Family.COVER].given_up
+    return figures
+
+
+def _sides(candidates: Sequence[Candidate], start: StartShape) -> float:
+    """Straight sides of the flat sheet; endless where the next run chooses its start."""
+    if not start.is_auto:
+        return start.sides
+    if not candidates:
+        return math.inf
+    outline = candidates[0].sheet.start
+    return RECTANGLE.sides if outline is None else len(outline)
+
+
+@lru_cache(maxsize=16)
+def _is_convex(start: StartShape) -> bool:
+    """Whether a start has no hollows: what is known of closed sheets is known of such."""
+    return start.outline is None or not hollows(start.outline)
+
+
+@lru_cache(maxsize=64)
+def _limit(target: Outline, sides: float) -> tuple[str, Mapping[str, float]] | None:
+    """Code and facts of the limit of closed sheets of so many sides; None without one."""
     target = target.filled
     back = turn_back(target)
     if back.angle >= TURNS_BACK:
         low, high = target.points.min(axis=0), target.points.max(axis=0)
-        across, up = 100.0 * (back.stretch.mean(axis=0) - low) / (high - low)
-        return Note.of("covers.turns_back", degrees=math.degrees(back.angle), across=across, up=up, **figures)
-    if no_closed_sheet_shows(target, start):
-        return Note.of("covers.many_arms", sides=start.sides, **figures)
-    return Note.of("covers.better", **figures)
+        across, up = (100.0 * (back.stretch.mean(axis=0) - low) / (high - low)).tolist()
+        return "covers.turns_back", {"degrees": math.degrees(back.angle), "across": across, "up": up}
+    return ("covers.many_arms", {"sides": sides}) if sides_needed(target) > sides else None
 
 
 def completed(run: Iterator[object], tell: Tell) -> Result:
@@ -342,7 +444,8 @@ def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: floa
     cut = hinge_layer(cut)
     widths = (cut.width_mm, cut.connector_mm, cut.kerf_mm)
     try:
-        return replace(request, keep=keep_for_connectors(request.uniform, material_for(cut), *widths))
+        least = least_keep(request.target)
+        return replace(request, keep=keep_for_connectors(request.uniform, material_for(cut), *widths, least))
     except FabricationError:
         if request.trims:
             raise
@@ -465,7 +568,7 @@ def refitting(
         target,
         wanted.prefer,
         locked,
-        partial(keep_for, candidate, settings),
+        partial(keep_for, candidate, target, settings),
         cancel,
         regular=wanted.regular,
         free_rim=wanted.rim == "free",
@@ -473,6 +576,7 @@ def refitting(
         least_feature_mm=least_mm,
         room_mm=room_mm,
         least_gap_mm=gap_of(settings),
+        span_mm=_span_of(settings),
     )
     untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
     yield Refitted(decoded(refit.candidate), refit.better, untrimmed)
@@ -504,12 +608,13 @@ def fitting_again(
 
 def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
     """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
-    from kirigami_studio.pipeline.redesign import trimmed
+    from kirigami_studio.pipeline.redesign import Room, trimmed
     from kirigami_studio.polish.panel_size import least_in_cells
 
     least_mm, _ = sizes_of(settings)
     least = least_in_cells(least_mm, settings.width_mm, candidate.score.evenness.width)
-    found = trimmed(candidate, target, keep_for(candidate, settings), cancel, least_panel=least)
+    room = Room(settings.width_mm, _span_of(settings))
+    found = trimmed(candidate, target, keep_for(candidate, target, settings), cancel, least_panel=least, room=room)
     if cancel():
         raise Cancelled("trim.stopped")
     yield decoded(found.candidate)
@@ -526,6 +631,14 @@ def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
         return 0.0, 0.0
 
 
+def _span_of(settings: FabricationSettings) -> float:
+    """Width of a connector and of the cut that sheets leave room for; 0 without, and for an unknown material."""
+    try:
+        return 0.0 if pin_gap_mm(settings) else span_mm(settings)
+    except KirigamiError:
+        return 0.0
+
+
 def gap_of(settings: FabricationSettings) -> float:
     """Distance, mm, that pins keep; 0 without pins, and for an unknown material."""
     try:
@@ -534,9 +647,15 @@ def gap_of(settings: FabricationSettings) -> float:
         return 0.0
 
 
-def keep_for(candidate: Candidate, settings: FabricationSettings) -> float:
+def least_keep(target: Outline) -> float:
+    """Depth (unit cells) of the material that stays at hinges of a trimmed sheet whatever its connectors are."""
+    return HOLE_KEEP if target.holes else KEEP
+
+
+def keep_for(candidate: Candidate, target: Outline, settings: FabricationSettings) -> float:
     """Depth (unit cells) of the material that trimming has to leave at the hinges of a candidate."""
     from kirigami_studio.pipeline.redesign import keep_for_connectors
 
     sheet, cut = candidate.sheet, hinge_layer(settings)
-    return keep_for_connectors(sheet, material_for(cut), cut.width_mm, cut.connector_mm, cut.kerf_mm)
+    widths = cut.width_mm, cut.connector_mm, cut.kerf_mm
+    return keep_for_connectors(sheet, material_for(cut), *widths, least_keep(target))

@@ -42,6 +42,7 @@ FILE_KINDS = (
     FileKind(".obj", mark("OBJ solid, mm"), mark("Closed bodies with names, for modelling programs"), True),
     FileKind(".fold", mark("FOLD, mm"), mark("Panels, cuts and hinges at five angles, for origami programs"), False),
     FileKind(".xml", mark("MuJoCo model"), mark("Rigid parts on hinges with contacts (MJCF), to simulate"), False),
+    FileKind(".inp", mark("Finite elements, mm"), mark("The finished sheet for Gmsh, CalculiX and Abaqus"), True),
     FileKind(".csv", mark("Tables, mm"), mark("Panels and hinges, for spreadsheets and scripts"), False),
 )
 

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -18,11 +18,13 @@ from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.fabricate.findings import Problem, Severity
 from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.fabricate.options import BoardCut
 from kirigami_studio.foundation.errors import (
     Cancelled,
     ExportError,
     FabricationError,
     KirigamiError,
+    MechanicsError,
     ProjectError,
     UsageError,
 )
@@ -33,6 +35,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.design_facts import design_facts
+from kirigami_studio.project.sheet_size import sized
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     hold_options,
@@ -49,20 +52,25 @@ from kirigami_studio.studio.cutting import kerf_mm, refuse_errors
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
 
 if TYPE_CHECKING:
+    from kirigami_studio.assembly.backed import BackedSheet
     from kirigami_studio.assembly.checks import PinnedReport
     from kirigami_studio.assembly.nesting import LaidShape
-    from kirigami_studio.assembly.pieces import Piece
+    from kirigami_studio.assembly.pieces import Assembly, Piece
     from kirigami_studio.assembly.posed_pieces import PosedPieces
+    from kirigami_studio.evaluate.posed_design import PosedDesign
+    from kirigami_studio.export.artwork_files import PrintedBed
+    from kirigami_studio.export.artwork_pieces import PrintedPieces
     from kirigami_studio.export.assembly_files import AssemblyFiles, AssemblyJob
     from kirigami_studio.export.cut_motion import CutMotion
     from kirigami_studio.export.exporter import ExportJob
     from kirigami_studio.export.print_files import PrintJob
+    from kirigami_studio.export.printed_pages import PrintedPages
     from kirigami_studio.export.strokes import Work
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.fabricate.checks import PlanReport
     from kirigami_studio.fabricate.cut_plan import CutPlan
     from kirigami_studio.fabricate.material import Material
-    from kirigami_studio.foundation.arrays import FloatArray
+    from kirigami_studio.foundation.arrays import ShapeRings
     from kirigami_studio.mechanics.gripping import Gripping
     from kirigami_studio.pipeline.request import Request
     from kirigami_studio.project.document import Document
@@ -148,6 +156,10 @@ class ExportedFiles:
     verdict: Verdict | None = None  #: On the sheet that a cut file holds; coupons and pictures have none
     files: tuple[Path, ...] = ()  #: All of them, in the order of writing
     pieces: MadePieces | None = None  #: Of a pinned design, which has no plan
+    #: Of a target of several parts, what was written of each; all else is of all of them, the verdict the worst.
+    parts: tuple[ExportedFiles, ...] = ()
+    part: str = ""  #: Name of the part that this is of; "" for the whole
+    work: Work | None = None  #: Length and time of all cuts of the sheets of several parts
 
     @property
     def ok(self) -> bool:
@@ -249,7 +261,7 @@ def with_cuttable_chosen(document: Document) -> tuple[Document, KirigamiError | 
     first: KirigamiError | None = None
     planned_at_least: Document | None = None
     for number in range(document.chosen or 0, len(document.candidates)):
-        chosen = replace(document, chosen=number)
+        chosen = sized(replace(document, chosen=number))
         request = CutRequest.of(chosen)
         try:
             made = pieces_of(request) if request.is_pinned else planned(request)
@@ -269,6 +281,14 @@ def planning(request: CutRequest, cancel: Cancel) -> Iterator[Planned | MadePiec
     """Plan the cuts, or the pieces of a pinned design, and check them."""
     importing.import_as_cut()
     yield pieces_of(request) if request.is_pinned else planned(request, cancel)
+
+
+def laying_pages(plan: CutPlan, paper: str, cancel: Cancel) -> Iterator[PrintedPages]:
+    """Lay a plan over pages of paper, as its PDF has them."""
+    importing.import_exporters()
+    from kirigami_studio.export.printed_pages import printed_pages
+
+    yield printed_pages(plan, paper)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -389,16 +409,36 @@ def pieces_of(request: CutRequest) -> MadePieces:
     settings, target = request.settings, request.target
     if target is None:
         raise ProjectError("export.no_chosen_design")
-    made = assembled(request.candidate, settings, target)
-    shown = shapely.get_coordinates(made.plan.opened.exterior)[:-1]
+    made = _with_artwork(assembled(request.candidate, settings, target), request.artwork, target)
+    opened = made.plan.opened
+    shown = tuple(shapely.get_coordinates(ring)[:-1] for ring in (opened.exterior, *opened.interiors))
     verdict = judge_assembled(request.candidate, made, settings)
     job = _print_job(request, made, shown) if is_printed(settings) else _assembly_job(request, made, shown, verdict)
-    grips = grips_on_pins(made.assembly.deployment, settings)
-    names = [made.assembly.pieces[panel].id for panel in grips]
+    grips = grips_on_pins(made.assembly.deployment, settings, made.assembly.numbers.tolist())
+    names = [made.assembly.piece_on(panel).id for panel in grips]
     return MadePieces(made, replace(job, grips=(names[0], names[1])), verdict, grips)
 
 
-def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> PrintJob:
+@lru_cache(maxsize=MOST_PLANS)
+def _with_artwork(made: Assembled, artwork: Artwork | None, target: Outline) -> Assembled:
+    """The pieces with the lines of artwork, unless they are printed: see :func:`printed_parts`."""
+    if artwork is None or not artwork.has_lines or made.plan.options.in_one_plane:
+        return made
+    from kirigami_studio.assembly.posed_pieces import PieceLook, PosedPieces
+    from kirigami_studio.evaluate.posed_design import PosedDesign
+    from kirigami_studio.export.artwork_pieces import PrintedPieces, artwork_lines, with_lines
+
+    plan, drive = made.plan, made.drive
+    design = PosedDesign(plan.assembly.deployment, plan.pose, plan.assembly.phi_target)
+    lines = artwork_lines(PrintedPieces(PosedPieces(plan.assembly, design, PieceLook()), target.rings), artwork)
+    return replace(
+        made,
+        plan=replace(plan, assembly=with_lines(plan.assembly, lines)),
+        drive=None if drive is None else replace(drive, assembly=with_lines(drive.assembly, lines)),
+    )
+
+
+def _print_job(request: CutRequest, made: Assembled, shown: ShapeRings) -> PrintJob:
     from kirigami_studio.export.print_files import PrintJob
 
     settings = request.settings
@@ -416,7 +456,7 @@ def _print_job(request: CutRequest, made: Assembled, shown: FloatArray) -> Print
     )
 
 
-def _assembly_job(request: CutRequest, made: Assembled, shown: FloatArray, verdict: Verdict) -> AssemblyJob:
+def _assembly_job(request: CutRequest, made: Assembled, shown: ShapeRings, verdict: Verdict) -> AssemblyJob:
     from kirigami_studio.export.assembly_files import AssemblyJob
     from kirigami_studio.project.store import packed_design
 
@@ -456,21 +496,19 @@ def posed_pieces(request: CutRequest) -> PosedPieces | None:
         No such material, or sizes that do not go together.
     """
     from kirigami_studio.assembly.posed_pieces import PosedPieces
-    from kirigami_studio.evaluate.posed_design import PosedDesign
     from kirigami_studio.studio.assembling import assembled
 
     if request.target is None or not request.has_layers:
         return None
     if not request.is_pinned:
-        layers, pose = planned(request).layers, request.candidate.final_pose
+        layers = planned(request).layers
         if layers is None or layers.glued is None:
             return None
-        sheet, phi = layers.glued.sheet, request.candidate.final_phi
-        design = PosedDesign(request.deployment, pose, phi)
-        if sheet.deployment is not request.deployment:
-            design = design.laid_over(sheet.deployment)
+        sheet = layers.glued.sheet
+        design = _posed_on_cloth(request, sheet)
         return PosedPieces.on_cloth(sheet, layers.assembly, design, layers.material, layers.holds)
     made = assembled(request.candidate, request.settings, request.target)
+    made = _with_artwork(made, request.artwork, request.target)
     return PosedPieces.of(made.plan, material_for(request.settings), request.settings.fastener, made.held.places)
 
 
@@ -583,7 +621,7 @@ def planned(request: CutRequest, cancel: Cancel = never) -> Planned:
     # The target, because what a trim keeps takes no part in comparisons.
     layers = [hinge_layer(settings), *([board_layer(settings)] if is_backed(settings) else [])]
     figures = [(material_for(cut), machine_for(cut)) for cut in layers]
-    key = (request.candidate, request.target, settings, *figures, name)
+    key = (request.candidate, request.target, settings, *figures, name, request.artwork if len(layers) > 1 else None)
     made = _PLANS.pop(key, None) or _planned_anew(request, cancel)
     _PLANS[key] = made
     while len(_PLANS) > MOST_PLANS:
@@ -615,12 +653,17 @@ def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:
     from kirigami_studio.project.store import packed_design
 
     settings, sheet, target = request.settings, backing.sheet, None
-    hold = hold_options(board_layer(settings))
+    hold, assembly, board = hold_options(board_layer(settings)), backing.assembly, backing.board
+    if request.artwork is not None and request.artwork.has_lines and backing.jig.cut is not BoardCut.KISS:
+        from kirigami_studio.export.artwork_pieces import artwork_lines, with_lines
+
+        assembly = with_lines(assembly, artwork_lines(_printed_tiles(request, sheet, assembly), request.artwork))
+        board = sheet.board(backing.jig, assembly)
     if request.target is not None:
         back = request.candidate.final_pose.inverse()
         target = tuple(back.apply(ring) * sheet.cell_mm for ring in request.target.rings)
     return AssemblyJob(
-        backing.assembly,
+        assembly,
         backing.material,
         backing.machine,
         settings.fastener,
@@ -639,8 +682,26 @@ def _layers_job(request: CutRequest, backing: Backing) -> AssemblyJob:
         holds=backing.held.places,
         provenance=request.facts,
         record=b"" if request.document is None else packed_design(request.document, request.candidate),
-        glued=Glued(sheet, backing.board, backing.material, backing.jig.cut, backing.held.places),
+        glued=Glued(sheet, board, backing.material, backing.jig.cut, backing.held.places),
     )
+
+
+def _printed_tiles(request: CutRequest, sheet: BackedSheet, tiles: Assembly) -> PrintedPieces:
+    """Tiles as artwork lies on them."""
+    from kirigami_studio.assembly.posed_pieces import PieceLook, PosedPieces
+    from kirigami_studio.export.artwork_pieces import PrintedPieces
+
+    design = _posed_on_cloth(request, sheet)
+    target = None if request.target is None else request.target.rings
+    return PrintedPieces(PosedPieces(tiles, design, PieceLook()), target)
+
+
+def _posed_on_cloth(request: CutRequest, sheet: BackedSheet) -> PosedDesign:
+    """The hinge layer as it is cut over its target."""
+    from kirigami_studio.evaluate.posed_design import PosedDesign
+
+    design = PosedDesign(request.deployment, request.candidate.final_pose, request.candidate.final_phi)
+    return design if sheet.deployment is request.deployment else design.laid_over(sheet.deployment)
 
 
 def _work(plan: CutPlan, profile: str) -> Work | None:
@@ -718,19 +779,51 @@ def picture_job(request: CutRequest) -> ExportJob:
     return replace(export_job(request, None), pieces=posed_pieces(request))
 
 
-def printed_job(request: CutRequest, cancel: Cancel = never) -> ExportJob:
-    """Job of the files of a printed sheet.
+def printed_parts(request: CutRequest, cancel: Cancel = never) -> tuple[ExportJob, tuple[PrintedBed | None, ...]]:
+    """Job of the files of a printed design, and the beds of its pieces; None for a sheet.
 
     Raises
     ------
     ExportError
-        It is made of pieces: their faces lie elsewhere on the beds than on the sheet.
+        Its faces get no picture: it comes out of a 3D printer, or the faces of its tiles are glued on.
     FabricationError
         A plan that cannot be made.
     """
-    if request.is_pinned:
-        raise ExportError("artwork.pieces")
-    return export_job(request, planned(request, cancel))
+    settings = request.settings
+    if is_printed(settings):
+        raise ExportError("artwork.printer")
+    if not request.has_layers:
+        return export_job(request, planned(request, cancel)), (None,)
+    from kirigami_studio.export.artwork_files import PrintedBed
+    from kirigami_studio.export.assembly_files import bed_facts
+    from kirigami_studio.export.cut_bed import LAYERS
+    from kirigami_studio.export.profile import find_profile
+
+    made = pieces_of(request) if request.is_pinned else planned(request, cancel)
+    job = made.cutting if isinstance(made, MadePieces) else made.layers
+    printed = printed_pieces(request, made)
+    if job is None or printed is None:
+        raise ExportError("artwork.kiss_cut")
+    beds = []
+    for bed in (one for one in job.beds if one.layer <= LAYERS):
+        facts = bed_facts(job, bed, bed.strokes(find_profile(job.profile)))
+        places = {cuts.piece.id: place for cuts, place in bed.placed}
+        beds.append(PrintedBed(bed.name, printed, places, bed.size_mm, facts, facts["DESIGN"]))
+    return export_job(request, None), tuple(beds)
+
+
+def printed_pieces(request: CutRequest, made: Planned | MadePieces) -> PrintedPieces | None:
+    """The pieces whose fronts get artwork; None for a sheet, a print, and kiss-cut tiles."""
+    from kirigami_studio.assembly.posed_pieces import PieceLook, PosedPieces
+    from kirigami_studio.export.artwork_pieces import PrintedPieces
+
+    if isinstance(made, MadePieces):
+        target, posed = None if request.target is None else request.target.rings, made.posed
+        printed = PrintedPieces(PosedPieces(posed.assembly, posed.design, PieceLook()), target)
+        return None if made.cutting is None else printed
+    if made.layers is None or made.layers.glued is None or request.settings.board_cut is BoardCut.KISS:
+        return None
+    return _printed_tiles(request, made.layers.glued.sheet, made.layers.assembly)
 
 
 def written(
@@ -770,7 +863,8 @@ def written(
         def judge(verifications: Sequence[Verification]) -> Verdict:
             return judged(request, made, as_cut, verifications)
 
-        folder, layers = _layers_written(made.layers, output, judge, made.report.problems)
+        held = replace(made.layers, grips=_grips_on_tiles(request, made))
+        folder, layers = _layers_written(held, output, judge, made.report.problems)
         read = layers.verifications
         return ExportedFiles(folder, made, read, verdict=judge(read), files=layers.files)
     from kirigami_studio.export.export_set import export_all, placed
@@ -806,6 +900,24 @@ def written(
     return ExportedFiles(place, made, verified, motion=motion, verdict=verdict, files=files)
 
 
+def _grips_on_tiles(request: CutRequest, made: Planned) -> tuple[str, str] | None:
+    """Ids of the tiles to hold and to pull; None where too few hang together."""
+    from kirigami_studio.studio.as_cut import grips_on_tiles
+
+    assert made.layers is not None
+    columns = request.deployment.topology.columns + 1
+    tiles = {row * columns + column: one.id for one in made.layers.assembly.pieces for row, column in [one.panel]}
+    if len(tiles) < 2:
+        return None
+    try:
+        held, pulled = grips_on_tiles(
+            request.candidate, request.deployment, made.plan, request.settings.width_mm, list(tiles)
+        )
+    except MechanicsError:
+        return None
+    return tiles[held], tiles[pulled]
+
+
 def exporting(
     request: CutRequest, output: Output, many_pages: bool, cancel: Cancel
 ) -> Iterator[ExportedFiles | ManyPages]:
@@ -828,7 +940,7 @@ def exporting(
             return
     made = planned(request, cancel)
     size, paper = made.plan.copies.spread_mm, request.settings.paper
-    if output.has_pdf and not many_pages and (many := _many_pages(size, paper)):
+    if output.has_pdf and not many_pages and (many := many_pages_of(size, paper)):
         yield many
         return
 
@@ -844,7 +956,7 @@ def exporting(
     yield found
 
 
-def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
+def many_pages_of(size: tuple[float, float], paper: str) -> ManyPages | None:
     """Warning before a PDF (width, height; mm) of many pages is written; None for few."""
     from kirigami_studio.export.paper import page_notes, tile
 
@@ -855,7 +967,7 @@ def _many_pages(size: tuple[float, float], paper: str) -> ManyPages | None:
 def exporting_artwork(
     request: CutRequest, folder: Path, many_pages: bool, cancel: Cancel
 ) -> Iterator[ExportedFiles | ManyPages]:
-    """Write the printed sheet into a folder: SVG, PDF and PNG in register with the cuts, and a picture of it opened.
+    """Write the printed parts in register with the cuts, and a picture of them opened.
 
     Where the PDF has many pages, nothing is written unless ``many_pages`` are wanted.
     """
@@ -864,12 +976,15 @@ def exporting_artwork(
 
     if request.artwork is None:
         raise ProjectError("artwork.none")
-    work = ArtworkJob.usual(request.artwork, printed_job(request, cancel))
-    if not many_pages and (many := _many_pages(work.page_mm, request.settings.paper)):
-        yield many
+    job, beds = printed_parts(request, cancel)
+    works = [ArtworkJob.usual(request.artwork, job, bed) for bed in beds]
+    pages = [many_pages_of(work.page_mm, request.settings.paper) for work in works]
+    if not many_pages and any(pages):
+        yield max(filter(None, pages), key=lambda many: many.pages)
         return
     with importing.collecting_between():
-        write_artwork(work, folder)
+        for work in works:
+            write_artwork(work, folder)
     yield ExportedFiles(folder, None)
 
 

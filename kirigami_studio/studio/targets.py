@@ -19,7 +19,7 @@ from kirigami_studio.foundation.errors import KirigamiError, TargetError, UsageE
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.outlines import silhouettes
-from kirigami_studio.outlines.merging import Join, Merging, merged, usual_outline
+from kirigami_studio.outlines.merging import Join, Merged, Merging, merged, usual_outline
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import ALL, LARGEST, SourceParts, Strokes
 from kirigami_studio.outlines.pieces import largest_piece, rings_of
@@ -170,18 +170,52 @@ class PartChoice:
         words = parts if parts is not None else ALL if several else LARGEST
         return cls(words, Merging(way, bridge, stroke is not None, stroke or None))
 
+    @property
+    def is_each(self) -> bool:
+        """Whether every piece is to be a sheet of its own."""
+        return self.merging.join is Join.EACH
+
     def outline(self, path: Path, threshold: float | None = None) -> Outline:
-        """The outline of the chosen parts of a file, or of the object; ``threshold`` is that of a picture."""
+        """The outline of the chosen parts of a file, or of the object; ``threshold`` is that of a picture.
+
+        Raises
+        ------
+        UsageError
+            They are several pieces, each to be a sheet of its own.
+        """
+        pieces = self.pieces(path, threshold)
+        if len(pieces) > 1:
+            raise UsageError("parts.several_targets", count=len(pieces))
+        return pieces[0].outline
+
+    def pieces(self, path: Path, threshold: float | None = None) -> tuple[PieceRead, ...]:
+        """The outline, or that of each piece which is to be a sheet of its own."""
         if self.strokes is not None:
-            return _object(path, self.strokes)
+            return (PieceRead(_object(path, self.strokes)),)
         from kirigami_studio.outlines.read_image import image_parts
 
         source = image_parts(path, threshold) if is_picture(path) else read_parts(path)
         if not is_picture(path) and self == PartChoice(LARGEST, Merging()):
-            return usual_target(path, source)
+            return (PieceRead(usual_target(path, source)),)
         chosen = source.chosen(self.words)
         with decoding(path, "source.image_damaged"):
-            return merged(source, chosen, self.merging).outline
+            found = merged(source, chosen, self.merging)
+        return pieces_of(found)
+
+
+@dataclass(frozen=True, slots=True)
+class PieceRead:
+    """A piece of a drawing that is a target by itself."""
+
+    outline: Outline
+    place: tuple[float, float] | None = None  #: of its area centroid in the drawing, source units, y up
+
+
+def pieces_of(found: Merged) -> tuple[PieceRead, ...]:
+    """The pieces of merged parts; one alone has no place."""
+    if not found.others:
+        return (PieceRead(found.outline),)
+    return tuple(PieceRead(one.outline, one.place) for one in found.all)
 
 
 def _object(path: Path, strokes: Strokes) -> Outline:

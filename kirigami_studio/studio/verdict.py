@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.assembly.checks import closed_holes
+from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.fabricate.checks import PlanReport
 from kirigami_studio.fabricate.cut_plan import CutPlan
 from kirigami_studio.fabricate.findings import Note, Problem, Severity
@@ -623,24 +624,18 @@ def _of_wishes(plan: CutPlan) -> list[Problem]:
 
 def _of_design(candidate: Candidate) -> list[Problem]:
     """A sheet that was fitted for trimming is free of contacts; its score is that of the sheet before."""
-    return [] if candidate.score.feasible or candidate.trim is not None else [Problem.error("rank.not_feasible")]
+    trim = candidate.trim
+    fitted = trim is not None and (candidate.origin is not Origin.EDITED or trim.sheet != candidate.sheet)
+    return [] if candidate.score.feasible or fitted else [Problem.error("rank.not_feasible")]
 
 
 def _of_holes(candidate: Candidate, width_mm: float) -> list[Problem]:
     """Holes of the target that the trimmed sheet does not show, and where on it they would be."""
     trim = candidate.trim
-    if trim is None or not trim.closed_holes:
+    if trim is None or not trim.holes:
         return []
     flat = deploy(trim.sheet).compact
-    low, scale = flat.min(axis=0), width_mm / float(np.ptp(flat[:, 0]))
-    problems = []
-    for small in (True, False):
-        closed = [hole for hole in trim.closed_holes if hole.is_small is small]
-        if closed:
-            x, y = ((np.array(closed[0].place) - low) * scale).tolist()
-            code, where = "trim.hole_too_small" if small else "trim.hole_holds_sheet", {"x": x, "y": y}
-            problems.append(Problem.warning(code, (x, y), count=len(closed), total=len(trim.holes), **where))
-    return problems
+    return closed_holes(trim.holes, flat.min(axis=0), width_mm / float(np.ptp(flat[:, 0])))
 
 
 def _of_room(candidate: Candidate, ranking: Ranking) -> list[Problem]:

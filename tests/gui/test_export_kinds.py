@@ -30,6 +30,7 @@ FIRST_BYTES = {
     ".stl": b"Kirigami Studio",
     ".3mf": b"PK",
     ".obj": b"# Kirigami Studio",
+    ".inp": b"** Kirigami Studio",
     ".fold": b'{"file_spec":1.2',
     ".xml": b"<mujoco",
     ".csv": b"part,layer,",

@@ -312,3 +312,12 @@ def test_that_sizes_of_parts_have_the_decimal_sign_of_the_language(
     assert "40,0 \N{MULTIPLICATION SIGN} 40,0 mm" in picker.size_.text()
     assert all("." not in item.text(0).splitlines()[1] for item in picker._items.values())
     picker.reject()
+
+
+@pytest.mark.usefixtures("german")
+def test_that_the_german_make_page_is_not_cut_off_in_a_small_window(designed: MainWindow) -> None:
+    designed.pages.turn(WindowPage.MAKE)
+    designed.resize(1000, 640)
+    QApplication.processEvents()
+    scrolled = designed.fabrication.scrolled
+    assert scrolled.widget().width() <= scrolled.viewport().width()

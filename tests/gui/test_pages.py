@@ -8,8 +8,9 @@ from itertools import permutations
 from pathlib import Path
 
 import pytest
+from maker_actions import begun
 from PySide6.QtCore import QEvent, QPoint, QRect, QSettings, Qt
-from PySide6.QtGui import QHelpEvent, QKeySequence
+from PySide6.QtGui import QHelpEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QPushButton, QToolTip, QWidget
 from pytestqt.qtbot import QtBot
@@ -19,7 +20,7 @@ from kirigami_studio.gui.make.cut_view import CutOverlay
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks
 from kirigami_studio.gui.widgets.fitted_text import BRIEF, CONTROLS, TOOLTIP_LINE, wrapped
-from kirigami_studio.gui.widgets.number_field import LengthField
+from kirigami_studio.gui.widgets.readable import ShownUnit
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -188,46 +189,6 @@ def test_that_a_run_goes_to_the_designs_and_shows_their_target(heart: MainWindow
     assert not heart.services.run.running
 
 
-class Maker:
-    """Counts what somebody does with mouse and keys."""
-
-    def __init__(self, window: MainWindow) -> None:
-        self.window, self.actions = window, 0
-
-    def line(self, key: str) -> None:
-        """Click a line of the question."""
-        listed = self.window.welcome.question.list
-        item = next(
-            listed.item(row) for row in range(listed.count()) if listed.item(row).data(Qt.ItemDataRole.UserRole) == key
-        )
-        listed.scrollToItem(item)
-        QTest.mouseClick(listed.viewport(), LEFT, pos=listed.visualItemRect(item).center())
-        self.actions += 1
-
-    def click(self, widget: QWidget) -> None:
-        assert widget.isVisible() and widget.isEnabled()
-        QTest.mouseClick(widget, LEFT)
-        self.actions += 1
-
-    def press(self, keys: str) -> None:
-        sequence = QKeySequence(keys)
-        combination = sequence[0]
-        QTest.keyClick(self.window, combination.key(), combination.keyboardModifiers())
-        self.actions += 1
-
-
-def begun(window: MainWindow, until: Until, tmp_path: Path) -> Maker:
-    """The first start, with few small designs to wait for."""
-    window.services.preferences.use(tmp_path / "preferences.toml")
-    window.services.settings.change(k=2, polish=2, auto_grid=False, grid=(4, 5))
-    window.session.restart(window.session.document, None)
-    window.pages.turn(WindowPage.SHAPE)
-    window.services.targeting.open("heart")
-    window.presenters.welcome.begin()
-    until(lambda: window.welcome.question.isVisible() and window.session.document.target is not None)
-    return Maker(window)
-
-
 @pytest.mark.torch
 def test_that_a_heart_in_film_is_a_file_after_three_actions(
     window: MainWindow, until: Until, files: object, tmp_path: Path
@@ -306,7 +267,7 @@ def test_that_no_menu_is_higher_than_a_small_screen(designed: MainWindow) -> Non
 def millimetres_afterwards() -> Iterator[None]:
     """Show millimetres in the windows of other tests."""
     yield
-    LengthField.assumed = ""
+    ShownUnit.inches = False
 
 
 @pytest.mark.usefixtures("millimetres_afterwards")

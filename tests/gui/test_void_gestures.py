@@ -286,14 +286,17 @@ def test_that_escape_takes_a_drag_back_without_a_step(by_hand: MainWindow, until
         assert view.design.deployment.field == before.sheet.field
 
 
-def test_that_a_trim_goes_with_the_first_change_and_comes_back_with_undo(by_hand: MainWindow, until: Until) -> None:
+def test_that_a_trim_is_made_again_after_a_change_and_comes_back_with_undo(by_hand: MainWindow, until: Until) -> None:
     by_hand.services.chosen.trim(True)
     until(lambda: chosen(by_hand).trim is not None)
     trimmed = chosen(by_hand)
     assert trimmed.trim is not None and by_hand.stage.view.design.deployment.sheet == trimmed.trim.sheet
     turn(by_hand.stage.view, middle_of(by_hand.stage.view, (1, 2)), 1)
     settle(by_hand, until)
-    assert chosen(by_hand).trim is None and "Trim removed" in by_hand.status_text.text()
+    again = chosen(by_hand).trim
+    assert again is not None and again.sheet == chosen(by_hand).sheet != trimmed.trim.sheet
+    assert again.keep == trimmed.trim.keep and "trimmed again" in by_hand.status_text.text()
+    assert by_hand.stage.view.design.trim == again
     seen, now = trimmed.trim.sheet.field.ratio, chosen(by_hand).sheet.field.ratio  # what was seen is what was changed
     assert np.argwhere(now != seen).tolist() == [[1, 2]] and now[1, 2] > seen[1, 2]
     by_hand.commands["undo"].trigger()

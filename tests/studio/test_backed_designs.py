@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from pypdf import PdfReader
 from shapely.geometry import Polygon
 
 import kirigami_studio as ks
@@ -28,10 +29,11 @@ from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.mechanics.gripping import panels_to_pin
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import new_settings
-from kirigami_studio.studio.as_cut import Source, estimate
+from kirigami_studio.studio.as_cut import Source, estimate, planned_sheet
 from kirigami_studio.studio.checking import checked_together
 from kirigami_studio.studio.cutting import least_feature_mm
 from kirigami_studio.studio.making import (
@@ -160,6 +162,18 @@ def test_that_the_parts_list_has_both_materials_glue_and_time(written: Path, mad
     assert float(parts[3]["area_mm2"]) == pytest.approx(tiles, rel=1e-4)
     assert float(parts[5]["seconds"]) == pytest.approx(made.seconds, abs=0.1)
     assert made.seconds > float(parts[2]["seconds"]) > 0.0
+
+
+def test_that_the_sheet_of_tiles_tells_where_to_hold_and_to_pull(
+    square: Document, written: Path, made: Planned
+) -> None:
+    request, width = CutRequest.of(square), square.fabrication.width_mm
+    lattice = made.plan.cut_from(request.deployment)
+    first = panels_to_pin(lattice, planned_sheet(lattice, made.plan, width), width, 16)[:2]
+    assert made.layers is not None
+    names = {int(np.ravel_multi_index(piece.panel, (4, 4))): piece.id for piece in made.layers.assembly.pieces}
+    told = PdfReader(written / "assembly.pdf").pages[0].extract_text()
+    assert f"hold {names[first[0]]}, pull {names[first[1]]}" in told
 
 
 def test_that_the_template_has_true_size(written: Path, made: Planned) -> None:

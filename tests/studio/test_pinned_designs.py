@@ -49,7 +49,6 @@ from kirigami_studio.studio.making import (
     exporting,
     pieces_of,
     planning,
-    printed_job,
     timing,
     written_pieces,
 )
@@ -208,12 +207,6 @@ def test_that_an_animation_shows_pieces_and_needs_no_simulation(
     assert exported is not None and exported.motion is None and exported.not_as_cut == ""
     (job,) = jobs
     assert job.pieces is not None and len(job.pieces.assembly.pieces) == 16
-
-
-def test_that_artwork_is_refused_for_pieces_with_a_sentence(pinwheel: Document) -> None:
-    with pytest.raises(ExportError) as refused:
-        printed_job(CutRequest.of(pinwheel))
-    assert refused.value.code == "artwork.pieces"
 
 
 def test_that_the_picture_of_assembled_designs_shows_three_states_of_each(pinwheel: Document, tmp_path: Path) -> None:

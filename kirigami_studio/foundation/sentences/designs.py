@@ -233,6 +233,30 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "No closed sheet of {sides:.0f} sides shows so many arms: {closed:.1f} % is the most found; with notches "
         "{cover:.1f} %, {given_up:.0f} % of the sheet cut away."
     ),
+    "covers.turns_back_ahead": mark(
+        "No closed sheet shows the notch at {across:.0f} % of the width and {up:.0f} % of the height, where the "
+        "outline turns back by {degrees:.0f} degrees: a run also makes "
+        "sheets with notches cut out."
+    ),
+    "covers.turns_back_closed": mark(
+        "No closed sheet shows the notch at {across:.0f} % of the width and {up:.0f} % of the height, where the "
+        "outline turns back by {degrees:.0f} degrees: {closed:.1f} % is the most found."
+    ),
+    "covers.turns_back_cover": mark(
+        "No closed sheet shows the notch at {across:.0f} % of the width and {up:.0f} % of the height, where the "
+        "outline turns back by {degrees:.0f} degrees: with notches "
+        "{cover:.1f} %, {given_up:.0f} % of the sheet cut away."
+    ),
+    "covers.many_arms_ahead": mark(
+        "No closed sheet of {sides:.0f} sides shows so many arms: a run also makes sheets with notches cut out."
+    ),
+    "covers.many_arms_closed": mark(
+        "No closed sheet of {sides:.0f} sides shows so many arms: {closed:.1f} % is the most found."
+    ),
+    "covers.many_arms_cover": mark(
+        "No closed sheet of {sides:.0f} sides shows so many arms: with notches {cover:.1f} %, "
+        "{given_up:.0f} % of the sheet cut away."
+    ),
     "covers.turns_back": mark(
         "No closed sheet shows the notch at {across:.0f} % of the width and {up:.0f} % of the height, where the "
         "outline turns back by {degrees:.0f} degrees: {closed:.1f} % is the most found; with notches {cover:.1f} %, "

@@ -88,8 +88,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "artwork.impossible_margin": mark("The margin must be 0 to {most:g} mm, got {margin_mm:g} mm."),
     "artwork.impossible_dpi": mark("The resolution must be above 0 dpi, got {dpi:g}."),
     "artwork.name_a_picture": mark("The project has no artwork. Name a picture with --picture."),
-    "artwork.pieces": mark(
-        "A picture can be printed on one sheet, not on pieces on pins. Choose another construction, or print none."
+    "artwork.printer": mark(
+        "A 3D printer gives each layer one colour and no picture. Choose another construction for artwork."
+    ),
+    "artwork.kiss_cut": mark(
+        "Tiles that are kiss-cut are glued on by the face that gets the picture. Choose tiles that are cut through."
     ),
     "artwork.none": mark("The project has no artwork. Choose a picture first."),
     "artwork.too_many_pixels": mark(
@@ -189,6 +192,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "written. Please report it."
     ),
     "linkage.not_as_written": mark("{name} did not read back as it was written. Write it again, or to another place."),
+    "elements.in_pieces": mark(
+        "The finished sheet falls into {pieces} pieces, and a finite element model is of one. Mend the cut plan first."
+    ),
     "linkage.apart": mark("Only {together} of {parts} parts hang together by hinges. Trim less, then write the model."),
     "page.not_as_written": mark(
         "The page did not read back as planned: {name:.40}. Nothing was written. Please report it."
@@ -349,6 +355,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "cut_file.name_cuts": mark(
         "The engraved name comes within {clear_mm:.3f} mm of a cut near ({x:.2f}, {y:.2f}) mm. Export it again."
     ),
+    "cut_file.sheets_differ": mark(
+        "The file says that it holds {promised} sheets, and not where each of them lies. Export again."
+    ),
     "cut_file.copies_differ": mark(
         "The file promises {promised:.20} copies of a sheet; those in it are not alike or not apart. Export it again."
     ),
@@ -452,6 +461,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "assembly.not_as_meant": mark("Nothing was written, for {name:.120} is not as it was meant: {finding}"),
     "verify.copies": mark(
         "The file holds {count} copies of the sheet, alike and {gap_mm:g} mm apart: cutting it leaves {pieces} pieces."
+    ),
+    "verify.sheets": mark("Sheets in the file: {count}, at least {gap_mm:g} mm apart."),
+    "verify.sheets_meet": mark(
+        "The sheets in the file should be {count}, at least {gap_mm:g} mm apart, and they meet. Export again."
+    ),
+    "parts.no_such_file": mark(
+        "A file of kind '{extension}' cannot hold the sheets of several parts; known are {known}. Choose a part for "
+        "other kinds."
     ),
     "verify.copies_differ": mark(
         "The file should hold {count} copies of the sheet, alike and {gap_mm:g} mm apart, and does not. Export again."

@@ -508,8 +508,9 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "smaller."
     ),
     "pinned.pins_left_out": mark_n(
-        "{count} pin is left out, which would have no wall; the pieces move in one way all the same.",
-        "{count} pins are left out, which would have no wall; the pieces move in one way all the same.",
+        "{count} pin is left out, which would have no wall or show in a hole; the pieces move in one way all the same.",
+        "{count} pins are left out, which would have no wall or show in a hole; the pieces move in one way all the "
+        "same.",
     ),
     "hold.marks_for_magnets": mark(
         "Engraved marks with numbers, two of each, meet as the sheet moves: {open} keep it open, {flat} flat. Glue a "
@@ -548,9 +549,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "hold.nothing_meets_flat": mark("Nothing keeps the sheet flat: no edges meet there that are long enough."),
     "pinned.not_made": mark("The pieces of this design could not be made ({reason:.200}). Choose another design."),
-    "pinned.target_has_holes": mark_n(
-        "Pieces on pins show no holes so far, and the target has {count}. Fill it, or make it one sheet or backed.",
-        "Pieces on pins show no holes so far, and the target has {count}. Fill them, or make it one sheet or backed.",
+    "pinned.hole_too_small": mark_n(
+        "{count} of {total} holes stays closed, for it is smaller than an ear, at x = {x:.1f}, y = {y:.1f} mm. Make "
+        "the sheet larger, or fill it.",
+        "{count} of {total} holes stay closed, for they are smaller than an ear, as at x = {x:.1f}, y = {y:.1f} mm. "
+        "Make the sheet larger, or fill them.",
     ),
     "pinned.falls_apart": mark_n(
         "Piece {piece} falls apart: the ears of its neighbours cut it through. Make the ears smaller or the sheet "

@@ -138,6 +138,17 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "parts.too_many_pieces": mark(
         "The chosen parts are {pieces} pieces, and at most {limit} can be bridged. Choose fewer, or a hull."
     ),
+    "parts.too_many_sheets": mark(
+        "The chosen parts are {pieces} pieces, and at most {limit} can be sheets of their own. Choose fewer, or join "
+        "them."
+    ),
+    "parts.several_targets": mark(
+        "The parts are {count} pieces, each a sheet of its own; this takes one shape. Join them by bridges, or choose "
+        "one."
+    ),
+    "parts.each_on_cluster": mark(
+        "A scheduler designs single targets: leave --scheduler out, or join the parts of each drawing."
+    ),
     "parts.not_a_drawing": mark(
         "'{source:.80}' has no parts to choose from. Options about parts are for files: {kinds}."
     ),

@@ -41,6 +41,13 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{path} does not hold the design that it was cut from. Open the project, or a cut file that this program wrote."
     ),
     "project.designs_without_target": mark("A project with designs also needs the target they were made for."),
+    "project.no_such_part": mark(
+        "There is no part {number} of this target: it has {parts} parts, counted from 0, and can have {limit}."
+    ),
+    "parts.no_such_part": mark("The project has no part called '{name}'. It has {names}."),
+    "parts.not_designed": mark("These parts have no design yet: {names}. Design them first, or choose a part."),
+    "project.part_without_target": mark("Every part of a target needs a shape, and has no parts of its own."),
+    "project.part_nowhere": mark("A part has no place in its drawing: ({x}, {y})."),
     "project.grids_differ": mark(
         "All designs of a project must have the same grid, got {rows} x {columns} and {other_rows} x {other_columns}."
     ),

@@ -44,6 +44,7 @@ from kirigami_studio.gui.gallery.gallery_model import (
 from kirigami_studio.gui.stage.layout_items import states_pixmap
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.readable import readable_width
 from kirigami_studio.gui.widgets.verdict_marks import ICONS, PALE, Badge, badges_of, colour_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.document import Mark
@@ -180,7 +181,7 @@ class TableCards(Cards):
         painter.setPen(QColor(self.palette_.muted))
         parts = [
             tr("panels ±{percent:.0f} %", percent=100.0 * score.evenness.area_cv),
-            tr("smallest {size:.1f} mm", size=index.data(FEATURE_ROLE)),
+            tr("smallest {size}", size=readable_width(index.data(FEATURE_ROLE), 1)),
         ]
         if trim is not None:
             parts.append(tr("gives up {percent:.0f} %", percent=100.0 * candidate.given_up))

@@ -13,7 +13,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.gallery_selection import Selection, SortOrder
 from kirigami_studio.gui.widgets.choice_box import ComboBox
 from kirigami_studio.gui.widgets.layouts import column, label, row
-from kirigami_studio.gui.widgets.number_field import DecimalField, decimal_field
+from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField, decimal_field
 
 
 class FilterControls(QObject):
@@ -41,7 +41,7 @@ class FilterControls(QObject):
             tr("Evenness: show only designs whose panel sizes vary by at most this, in percent (CV).")
         )
         name = tr("Minimum panel edge or neck in mm")
-        self.feature = _number(f"{prefix}leastFeature", 1000.0, 2, 0.1, f"{least} ", " mm", name)
+        self.feature = _number(f"{prefix}leastFeature", 1000.0, 2, 0.1, f"{least} ", " mm", name, LengthField)
         self.feature.setToolTip(tr("Show only designs whose smallest panel edge or neck is at least this, in mm."))
         self.numbers = ((tr("match"), self.least), (tr("panels"), self.variation), (tr("smallest"), self.feature))
         #: Boxes and numbers by the fields of a selection; numbers are shown so many times as large.
@@ -155,11 +155,18 @@ def _check(prefix: str, name: str, text: str, tip: str) -> QCheckBox:
 
 
 def _number(
-    name: str, largest: float, decimals: int, step: float, prefix: str, suffix: str, accessible: str
+    name: str,
+    largest: float,
+    decimals: int,
+    step: float,
+    prefix: str,
+    suffix: str,
+    accessible: str,
+    kind: type[DecimalField] = DecimalField,
 ) -> DecimalField:
     """A number that filters, or "any" at 0."""
     field = decimal_field(
-        DecimalField, name, 0.0, largest, decimals=decimals, step=step, suffix=suffix, accessible=accessible, width=92
+        kind, name, 0.0, largest, decimals=decimals, step=step, suffix=suffix, accessible=accessible, width=92
     )
     field.setPrefix(prefix)
     field.setSpecialValueText(tr("any"))

@@ -18,6 +18,7 @@ from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.gallery.gallery_selection import GalleryItem, Selection, format_value, places_in_order
 from kirigami_studio.gui.run.look_alikes import Stacks
 from kirigami_studio.gui.session.session import Entry, same_sample
+from kirigami_studio.gui.widgets.readable import readable_mm, readable_width
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
@@ -196,7 +197,8 @@ class GalleryModel(QAbstractListModel):
 
     def _size(self, entry: Entry) -> str:
         size = self._width_mm * least_panel_share(entry.design.deployment)
-        return tr("Smallest feature: {size:.2f} mm on a sheet {width:g} mm wide", size=size, width=self._width_mm)
+        width = readable_mm(self._width_mm)
+        return tr("Smallest feature: {size} on a sheet {width} wide", size=readable_width(size), width=width)
 
     def verdict_of(self, candidate: Candidate) -> Verdict:
         """The verdict on a design as it is cut now, an estimate until it was made."""

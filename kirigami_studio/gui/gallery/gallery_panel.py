@@ -46,7 +46,7 @@ class GalleryPanel(Card):
         self.bar.selection_changed.connect(self._select)
 
     def show_why(self, text: str) -> None:
-        """Say above the cards why there are designs of which parts are cut away; "" for nothing."""
+        """Say above the cards what no closed sheet shows, or why there are covers; "" for nothing."""
         self.why.setText(text)
         self.why.setVisible(bool(text))
 

@@ -25,7 +25,7 @@ from kirigami_studio.gui.widgets import icons
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.studio.as_cut import AsCut
-from kirigami_studio.studio.designing import why_covered
+from kirigami_studio.studio.designing import limit_of
 
 
 class GalleryPresenter(QObject):
@@ -172,8 +172,8 @@ class GalleryPresenter(QObject):
         self._panel.bar.show_count(document.settings.k)
         if not running:
             view.mark(document.candidate)
-            why = why_covered(document.candidates, document.target, document.settings.start)
-            self._panel.show_why("" if why is None else why.text)
+            limit = limit_of(document) if document.candidates else None
+            self._panel.show_why("" if limit is None else limit.text)
         self._show_ready(document)
         self._show_chosen()
 

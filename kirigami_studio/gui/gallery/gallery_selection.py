@@ -10,6 +10,7 @@ from enum import Enum
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import tr, tr_n
+from kirigami_studio.gui.widgets.readable import readable_width
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.pipeline.variety import distances
@@ -135,7 +136,7 @@ def differences(candidates: Sequence[Candidate], origin: Sheet | None) -> list[f
 def format_value(item: GalleryItem, selection: Selection, width_mm: float) -> str:
     """What a card says of the number that it is sorted by."""
     if selection.order is SortOrder.PANEL:
-        return tr("smallest {size:.1f} mm", size=width_mm * least_panel_share(item.deployment))
+        return tr("smallest {size}", size=readable_width(width_mm * least_panel_share(item.deployment), 1))
     if selection.order is SortOrder.UNLIKE and selection.unlike is not None:
         return tr("differs {value:.2f}", value=differences([item.candidate], selection.unlike)[0])
     if selection.order is SortOrder.TV:

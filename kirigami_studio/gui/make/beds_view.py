@@ -1,4 +1,4 @@
-"""Beds of a pinned design, or of tiles, side by side, with pieces, holes and numbers."""
+"""Beds of a pinned design, or of tiles, side by side, with pieces, holes, numbers and artwork."""
 
 from __future__ import annotations
 
@@ -14,13 +14,14 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.piece_items import colour_of, piece_path
 from kirigami_studio.gui.widgets.canvas import Canvas
+from kirigami_studio.gui.widgets.paths import line_path
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
 if TYPE_CHECKING:
     from kirigami_studio.studio.making import LaidBed
 
-#: Between two beds, in widths of a bed; height of a caption (pixels).
-BETWEEN, CAPTION = 0.06, 16.0
+#: Between two beds, in widths of a bed, and between rows with their captions, in heights; height of a caption (pixels).
+BETWEEN, BELOW, CAPTION = 0.06, 0.18, 16.0
 #: Pieces have numbers from so many pixels a millimetre on, in boxes of twice this size (pixels).
 NUMBERED, HALF_LABEL = 0.8, QPointF(30.0, 10.0)
 
@@ -47,7 +48,7 @@ class BedsView(Canvas):
             if min(self._room) <= 0.0:  # a hand has no bed
                 self._room = tuple(np.max([bed.size_mm for bed in self._beds], axis=0).tolist())
         columns = max(1, round(len(self._beds) ** 0.5))
-        width, height = (1.0 + BETWEEN) * self._room[0], (1.0 + BETWEEN) * self._room[1]
+        width, height = (1.0 + BETWEEN) * self._room[0], (1.0 + BELOW) * self._room[1]
         self._places = [
             np.array([number % columns * width, -(number // columns) * height]) for number in range(len(self._beds))
         ]
@@ -75,8 +76,11 @@ class BedsView(Canvas):
                 painter.setBrush(colour_of(look.face, self.palette_))
                 rings = [transform.to_pixels(at.put(ring) + place) for ring in rings_of(piece)]
                 painter.drawPath(piece_path(rings))
+                painter.setPen(colour_of(look.number, self.palette_))
+                painter.setBrush(Qt.BrushStyle.NoBrush)
+                for line in piece.drawn:
+                    painter.drawPath(line_path(transform.to_pixels(at.put(line) + place), closed=False))
                 if transform.scale > NUMBERED:
-                    painter.setPen(colour_of(look.number, self.palette_))
                     middle = QPointF(*transform.to_pixels(at.put(np.array([piece.label_at])) + place)[0].tolist())
                     box = QRectF(middle - HALF_LABEL, middle + HALF_LABEL)
                     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, piece.id)

@@ -34,7 +34,7 @@ from kirigami_studio.gui.widgets.legends import (
     paint_scale_bar,
 )
 from kirigami_studio.gui.widgets.paths import blank, painter_on
-from kirigami_studio.gui.widgets.readable import readable_size
+from kirigami_studio.gui.widgets.readable import in_unit, readable_size, readable_width
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
 #: Layer names for the legend.
@@ -254,10 +254,10 @@ class CutView(Canvas):
         if CutOverlay.CONNECTORS in self.overlays and len(self._connectors):
             low, high = self._connectors.span_mm
             if self._connectors.varied:
-                text = tr("connectors {low:.2f}\N{EN DASH}{high:.2f} mm", low=low, high=high)
+                text = tr("connectors {low}\N{EN DASH}{high}", low=in_unit(low, 2), high=readable_width(high))
                 chips.append(Chip(self.palette_.widths, text))
             else:
-                chips.append(Chip(self.palette_.widths[:1], tr("connectors {width_mm:.2f} mm", width_mm=low)))
+                chips.append(Chip(self.palette_.widths[:1], tr("connectors {width}", width=readable_width(low))))
         return chips
 
     # gestures ------------------------------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ from kirigami_studio.gui.make.fabrication_panel import sheets_of
 from kirigami_studio.gui.make.hinge_bar import HingeBar
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, ToolButton
-from kirigami_studio.gui.widgets.readable import readable_length, readable_size, readable_time
+from kirigami_studio.gui.widgets.readable import readable_length, readable_mm, readable_size, readable_time
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.studio.making import laid_beds
 
@@ -116,14 +116,15 @@ class CutsPage(Card):
         size, count, kerf_mm = readable_size(*self._plan.size_mm), len(self._plan.paths), self._plan.kerf_mm
         if len(self._plan.copies) > 1:
             size = sheets_of(self._plan)
+        kerf = readable_mm(kerf_mm)
         long = tr_n(
-            "{size}  ·  {count} cut  ·  kerf {kerf_mm:g} mm",
-            "{size}  ·  {count} cuts  ·  kerf {kerf_mm:g} mm",
+            "{size}  ·  {count} cut  ·  kerf {kerf}",
+            "{size}  ·  {count} cuts  ·  kerf {kerf}",
             count,
             size=size,
-            kerf_mm=kerf_mm,
+            kerf=kerf,
         )
-        return long, tr("{size}  ·  kerf {kerf_mm:g} mm", size=size, kerf_mm=kerf_mm), size
+        return long, tr("{size}  ·  kerf {kerf}", size=size, kerf=kerf), size
 
     def show_pieces(self, made: MadePieces | None) -> None:
         """Show the beds of a pinned design in the place of a plan; None shows the plan again."""

@@ -40,17 +40,19 @@ from kirigami_studio.studio.making import (
     Output,
     Planned,
     animating,
-    exporting,
     exporting_artwork,
     exporting_coupon,
     planning,
 )
+from kirigami_studio.studio.part_sheets import exporting_all
 
 if TYPE_CHECKING:
     from kirigami_studio.studio.verdict import Verdict
 
 #: Changes that follow each other faster than this (ms) lead to one plan.
 PLAN_DELAY_MS = 120
+#: Files that open in LightBurn.
+LIGHTBURN = ".lbrn2"
 #: What is said of a machine or a material that a project carries and the user does not have.
 NOT_KNOWN = {
     Machine: mark("You don't have the machine {name}; the project's own values are used."),
@@ -74,6 +76,7 @@ class CutPlanner(QObject):
         self._session = session
         self._job = LatestJob[Planned | MadePieces](session.queue)
         self._wanted: CutRequest | None = None
+        self.made: Planned | MadePieces | None = None  #: the last plan; None where there is none, or it was refused
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(PLAN_DELAY_MS)
@@ -81,6 +84,7 @@ class CutPlanner(QObject):
         session.display.settled.connect(self.plan_soon)
         session.fabrication_changed.connect(self.plan_soon)
         session.document_changed.connect(self._take_name)
+        session.document_changed.connect(self._take_artwork)
 
     @property
     def request(self) -> CutRequest | None:
@@ -106,6 +110,15 @@ class CutPlanner(QObject):
         if now is not None and now.candidate is before.candidate and now.name != before.name:
             self.plan_soon()
 
+    def _take_artwork(self, document: Document) -> None:
+        """Plan pieces again that get other lines engraved."""
+        before = self._wanted
+        if before is None or not before.has_layers:
+            return
+        now = self.request
+        if now is not None and now.candidate is before.candidate and now.artwork != before.artwork:
+            self.plan_soon()
+
     def close(self) -> None:
         """Plan no more."""
         self._timer.stop()
@@ -113,16 +126,21 @@ class CutPlanner(QObject):
     def _plan(self) -> None:
         self._job.stop()
         if self._wanted is None:
-            self.planned.emit(None)
+            self._tell(None)
             return
         callbacks = JobCallbacks(partial(self._take, self._wanted), on_failed=partial(self._refuse, self._wanted))
         self._job.start(tr("planning the cuts"), partial(planning, self._wanted), callbacks)
 
     def _take(self, request: CutRequest, made: Planned | MadePieces) -> None:
-        self.planned.emit(made)
+        self._tell(made)
         self.answered.emit(request, made)
 
+    def _tell(self, made: Planned | MadePieces | None) -> None:
+        self.made = made
+        self.planned.emit(made)
+
     def _refuse(self, request: CutRequest, sentence: str, trace: str) -> None:
+        self.made = None
         told = sentence if request.candidate.trim is None else f"{sentence} {tr(TRIM_AGAIN)}"
         self.refused.emit(told)
         self.not_planned.emit(request, told)
@@ -132,6 +150,7 @@ class DesignExporter(QObject):
     """Writes files of the design on the stage; a PDF of many pages only after asking."""
 
     exported = Signal(ExportedFiles)
+    open_wanted = Signal(Path)  #: in the program that the desktop has for it
 
     def __init__(
         self,
@@ -161,7 +180,7 @@ class DesignExporter(QObject):
             return
         if kind_of(path.suffix).cuts:
             self._preferences.remember(session.document)
-        self._write_pages(name, status, partial(exporting, self._with_as_cut(request), Output(path)))
+        self._write_pages(name, status, partial(exporting_all, self._with_as_cut(request), Output(path)))
 
     def export_all(self, folder: Path, name: str) -> None:
         """Write everything that there is of the design into a folder."""
@@ -169,7 +188,7 @@ class DesignExporter(QObject):
             return
         request = self._planner.request
         if request is not None:
-            steps = partial(exporting, self._with_as_cut(request), Output(folder, name, record=True))
+            steps = partial(exporting_all, self._with_as_cut(request), Output(folder, name, record=True))
             status = tr("Exporting to {name} …", name=folder.name)
             self._write_pages(tr("exporting to {name}", name=folder.name), status, steps)
 
@@ -222,7 +241,10 @@ class DesignExporter(QObject):
 
     def _report(self, exported: ExportedFiles) -> None:
         path, made = exported.path, exported.planned
-        if exported.pieces is not None:
+        if exported.parts:
+            self._session.set_status(tr("Exported {path}.", path=path))
+            message = message_of_parts(path, exported)
+        elif exported.pieces is not None:
             self._session.set_status(tr("Exported {path}.", path=path))
             message = message_of_pieces(path, exported.pieces, exported.verdict)
         elif made is None:
@@ -239,6 +261,8 @@ class DesignExporter(QObject):
                 )
             )
             message = message_of(path, made, exported.verdict)
+        if not exported.verifications:  # a report offers the same
+            message = replace(message, actions=((words_to_open(path), partial(self.open_wanted.emit, path)),))
         self._session.post(message)
         for about in older_messages(exported):
             self._session.post(about)
@@ -247,6 +271,13 @@ class DesignExporter(QObject):
     def _report_failure(self, sentence: str, trace: str) -> None:
         self._session.set_status(tr("Export failed."))
         self._session.post(Message(sentence, Tone.ERROR, trace))
+
+
+def words_to_open(path: Path) -> str:
+    """The button that opens a written file or folder."""
+    if path.is_dir():
+        return tr("Open folder")
+    return tr("O&pen in LightBurn") if path.suffix == LIGHTBURN else tr("O&pen file")
 
 
 def older_messages(exported: ExportedFiles) -> list[Message]:
@@ -307,6 +338,28 @@ def message_of(path: Path, made: Planned, verdict: Verdict | None) -> Message:
         return Message(sentence, Tone.DONE, details)
     sentence = tr("{name} exported, but cutting it would fail: {text}", name=path.name, text=check.problems[0].text)
     return Message(sentence, Tone.WARNING, details)
+
+
+def message_of_parts(path: Path, exported: ExportedFiles) -> Message:
+    """Say what the files of all parts hold; the part that does worst decides."""
+    name = tr("Folder “{name}”", name=path.name) if path.is_dir() else path.name
+    lines = [str(path)]
+    for part in exported.parts:
+        lines += [part.part, *(() if part.verdict is None else part.verdict.lines)]
+    found = [part for part in exported.parts if part.verdict is not None and part.verdict.problems]
+    if found:
+        worst = next((part for part in found if part.verdict == exported.verdict), found[0])
+        assert worst.verdict is not None  # that is how they were found
+        level, text = worst.verdict.level_words, worst.verdict.problems[0].text
+        sentence = tr("{name} exported. {part}: {level}: {text}", name=name, part=worst.part, level=level, text=text)
+        return Message(sentence, Tone.WARNING, "\n".join(lines))
+    sentence = tr_n(
+        "{name} exported and checked: {count} sheet, no faults.",
+        "{name} exported and checked: {count} sheets, no faults.",
+        len(exported.parts),
+        name=name,
+    )
+    return Message(sentence, Tone.DONE, "\n".join(lines))
 
 
 def message_of_pieces(path: Path, pieces: MadePieces, verdict: Verdict | None) -> Message:

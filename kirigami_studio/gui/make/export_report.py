@@ -24,7 +24,7 @@ from kirigami_studio.fabricate.findings import Severity
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import ElidedLabel
-from kirigami_studio.gui.widgets.readable import UNKNOWN, readable_length, readable_range
+from kirigami_studio.gui.widgets.readable import UNKNOWN, ShownUnit, readable_box, readable_length, readable_range
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
 
 if TYPE_CHECKING:
@@ -172,9 +172,12 @@ class ExportReport(QDialog):
 
 def label(verification: Verification) -> str:
     """A line of the list of files: the verdict, then the file's name."""
+    name = verification.path.name
+    if verification.sheet:
+        name = tr("{name}, {part}", name=name, part=verification.sheet)
     if verification.ok:
-        return tr("Verified  ·  {name}", name=verification.path.name)
-    return tr("Do not cut  ·  {name}", name=verification.path.name)
+        return tr("Verified  ·  {name}", name=name)
+    return tr("Do not cut  ·  {name}", name=name)
 
 
 def verdict(verification: Verification) -> str:
@@ -223,7 +226,7 @@ def format_facts(verification: Verification) -> dict[str, str]:
     """Size, pieces, cut length and time by their captions, which are not translated yet."""
     width, height = verification.size_mm
     pieces = UNKNOWN if verification.pieces is None else str(verification.pieces)
-    size = tr("{width:.2f} \N{MULTIPLICATION SIGN} {height:.2f} mm", width=width, height=height)
+    size = readable_box(width, height, ".3f" if ShownUnit.inches else ".2f")
     return {
         mark("Size with overcuts"): size,
         mark("Pieces"): pieces,

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QPushButton, QSizePolicy, QToo
 
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.card import ToolButton
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.studio.file_kinds import FILE_KINDS
 
@@ -28,6 +29,7 @@ class ExportRow(QWidget):
     ideal_wanted = Signal()  #: an animation of the ideal motion
     all_wanted = Signal()
     artwork_wanted = Signal()
+    print_wanted = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -43,6 +45,9 @@ class ExportRow(QWidget):
         self.more.setToolTip(tr("Export another file type: SVG, PDF, PNG, GIF"))
         self.more.setAccessibleName(tr("Export another file type"))
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.print_ = ToolButton("printCuts", "print", tr("Print the cut sheet at true size (Ctrl+P)."))
+        self.print_.setProperty("offer", True)
+        self.print_.clicked.connect(self.print_wanted)
         self.menu = QMenu(self.more)
         self.menu.setToolTipsVisible(True)
         self.kinds: dict[str, QAction] = {}
@@ -67,9 +72,10 @@ class ExportRow(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(6)
         row.addWidget(self.export, 1)
-        row.addWidget(self.more)
-        self.more.setFixedWidth(38)
-        self.more.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored)
+        for button in (self.print_, self.more):
+            row.addWidget(button)
+            button.setFixedWidth(38)
+            button.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored)
 
     def show_goal(self, profile: str, version: str, extension: str) -> None:
         """Offer the cut file with this extension first, and say in the tooltip what it is written for."""
@@ -98,6 +104,7 @@ class ExportRow(QWidget):
         """Offer only what can be written: a picture needs a design, a cut file a plan."""
         self.export.setEnabled(cuts)
         self.more.setEnabled(cuts or pictures)
+        self.print_.setEnabled(cuts)
         self.everything.setEnabled(cuts)
         self.artwork.setEnabled(cuts)
         self.ideal.setEnabled(pictures)

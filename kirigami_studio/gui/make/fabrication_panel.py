@@ -32,6 +32,7 @@ from kirigami_studio.gui.widgets.readable import (
     readable_range,
     readable_size,
     readable_time,
+    readable_width,
 )
 from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, is_printed
 from kirigami_studio.settings.layers import sheet_material
@@ -214,7 +215,7 @@ class FabricationPanel(Card):
             "length": readable_length(length),
             "time": readable_range(times.low, times.high),
             "pieces": pieces,
-            "ligament": tr("{width_mm:.2f} mm", width_mm=report.min_ligament_mm),
+            "ligament": readable_width(report.min_ligament_mm),
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
@@ -240,7 +241,7 @@ class FabricationPanel(Card):
             if works
             else UNKNOWN,
             "pieces": tr("{pieces} + {pins} pins", pieces=pieces, pins=pins),
-            "ligament": tr("{width_mm:.2f} mm", width_mm=made.report.figures.neck_mm),
+            "ligament": readable_width(made.report.figures.neck_mm),
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)

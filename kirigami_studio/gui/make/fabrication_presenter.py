@@ -105,6 +105,12 @@ class FabricationPresenter(QObject):
             self._session.apply(fix.edit(self._session.document))
             self._session.history.end_drag()
 
+    def show_unit(self) -> None:
+        """Lengths are shown in another unit."""
+        if self._planner.made is not None:
+            self._show_plan(self._planner.made)
+            self._panel.show_verdict(self._keeper.state)
+
     def _show_plan(self, made: Planned | MadePieces | None) -> None:
         if made is None or isinstance(made, Planned):
             self._panel.show_plan(made)

@@ -14,7 +14,7 @@ from kirigami_studio.fabricate.slits import SHEET_EDGE
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.widgets.card import FittingLabel, ToolButton
-from kirigami_studio.gui.widgets.number_field import LengthField, number_field
+from kirigami_studio.gui.widgets.number_field import LengthField, names_length, number_field
 
 #: Which connectors of a plan are meant.
 Rule = Callable[[CutPlan], frozenset[int]]
@@ -110,6 +110,7 @@ class HingeBar(QWidget):
         self.width_mm.setAccessibleName(tr("Width of the selected connectors in millimetres"))
         self.width_mm.setFixedWidth(108)
         number_field(self.width_mm)
+        names_length(self.width_mm)
         self.remove = ToolButton("removeHinges", "sever", tr("Cut through: leave no connector here (Delete)."))
         self.reset = ToolButton("resetHinges", "reset", tr("Reset to the sheet's connector width."))
         self._lay_out()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from kirigami_studio.export.profile import PROFILES
 from kirigami_studio.fabricate.hold import HoldKind
@@ -40,6 +40,8 @@ class MoreOptions(QWidget):
         self.rows.setObjectName("muted")
         self.rows.setFixedHeight(self.copies.sizeHint().height())  # beside the numbers, not beside their captions
         self.rows.setAccessibleName(tr("Rows of copies"))
+        for box in (self.style_, self.order, self.dxf_version):  # as wide as their columns, whatever their words
+            box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self._lay_out()
         self._connect()
 

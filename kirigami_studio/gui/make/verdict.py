@@ -121,7 +121,12 @@ class VerdictKeeper(QObject):
         self._start(tr("trying fixes"), request, verdict, steps)
 
     def take_export(self, exported: ExportedFiles) -> None:
-        """Files were written and read back: the verdict answers for them, too."""
+        """Take the verdict with the files that were read back; of several parts the shown one."""
+        if exported.parts:
+            for part in exported.parts:
+                if self._planned is None or part.planned is None or part.planned.plan is self._planned[1].plan:
+                    self.take_export(part)
+            return
         if exported.pieces is not None and exported.verdict is not None and self.state.known:
             self._say(replace(self.state, verdict=exported.verdict))
         if exported.planned is None or exported.verdict is None:

@@ -28,7 +28,7 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.variety import distinct, look_alikes
 from kirigami_studio.polish.flat_sheet import uniform_sheet
-from kirigami_studio.project import candidate_edits
+from kirigami_studio.project import candidate_edits, target_parts
 from kirigami_studio.project.candidate_edits import NewDesigns
 from kirigami_studio.project.design_facts import with_run
 from kirigami_studio.project.document import Document, Mark
@@ -59,25 +59,38 @@ class Generation(QObject):
         self.planner = RunPlanner(session)
         self.run = DesignRun(session, self)
         self.stopped = StoppedRun(session, self._take_result)
+        self._shown = 0  # part that was shown when the run was asked for
+        self._left: list[int] = []  # parts whose turn comes next
         self.run.found.connect(session.display.add)
         self.run.completed.connect(self._take_result)
         self.run.cancelled.connect(self._offer_found)
         self.run.failed.connect(self._report_failure)
+        self.run.ended.connect(self._stop_unless_done)
         session.document_changed.connect(self.stopped.follow)
 
     def generate(self) -> None:
-        """Start a run for the present target and settings; pinned designs stay where they fit."""
-        if not self._hand.postpones(self.generate):
-            self._start(self.planner.anew)
+        """Start a run for the present target and settings; pinned designs stay where they fit.
+
+        Of a target of several parts it is for the one that is shown, then for those that have no designs yet.
+        """
+        if self._hand.postpones(self.generate) or self.run.running:
+            return
+        document = self._session.document
+        self._shown = document.part
+        others = [*range(document.part + 1, len(document.parts)), *range(document.part)]
+        self._left = [number for number in others if not document.parts[number].candidates]
+        self._start(self.planner.anew)
 
     def again(self) -> None:
         """Draw more designs, from the next seed, beside those there are."""
         if not self._hand.postpones(self.again):
+            self._left = []
             self._start(self.planner.more)
 
     def more_like(self, nearness: float) -> None:
         """Draw more designs near the chosen one, beside those there are."""
         if not self._hand.postpones(lambda: self.more_like(nearness)):
+            self._left = []
             self._start(lambda target: self.planner.alike(target, nearness))
 
     def cancel(self) -> None:
@@ -109,6 +122,26 @@ class Generation(QObject):
         if session.document is before:  # all of it was there already
             session.display.show()
         session.set_status(self.planner.summary(result, before, self.run.grid_reason))
+        self._go_on()
+
+    def _go_on(self) -> None:
+        """Show the next part that waits for designs and start its run; in the end the first."""
+        session = self._session
+        if not session.document.other_parts:
+            return
+        if not self._left:
+            if session.document.part != self._shown:
+                session.apply(target_parts.show_part(session.document, self._shown))
+                session.history.end_drag()
+            return
+        session.apply(target_parts.show_part(session.document, self._left.pop(0)))
+        session.history.end_drag()
+        self._start(self.planner.anew)
+
+    def _stop_unless_done(self, done: bool) -> None:
+        """Parts whose turn has not come wait for the next run, where this one was stopped."""
+        if not done:
+            self._left = []
 
     def _offer_found(self) -> None:
         self._session.display.show()
@@ -231,7 +264,8 @@ class RunPlanner:
 
         ``facts`` say where the designs come from, ``preview`` is the design that the user looked at meanwhile.
         """
-        document, plan = self._session.document, self.plan
+        plan = self.plan
+        document = target_parts.showing_target(self._session.document, result.request.target)
         self._session.as_cut = KnownAsCut.of(result, document.fabrication)
         seed = None if plan is None else plan.seed
         if plan is not None and plan.joins:

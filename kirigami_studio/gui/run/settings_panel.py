@@ -24,7 +24,7 @@ from kirigami_studio.gui.widgets.card import Card, ScrolledWhenShort, ToolButton
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.form import Form
-from kirigami_studio.gui.widgets.layouts import column, label, plain_pane, row, slider
+from kirigami_studio.gui.widgets.layouts import TOUCH, column, label, plain_pane, row, slider
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.lattice.ratio_field import LARGEST_GRID, SMALLEST_GRID
 from kirigami_studio.outlines.starts import RECTANGLE, USUAL_WEIGHT, StartShape
@@ -66,9 +66,8 @@ class SecondTargetRow(QWidget):
 
     def _lay_out(self) -> None:
         caption = label(tr("Sec&ond target"), self.shape)
-        self.remove.setFixedSize(caption.sizeHint().height(), caption.sizeHint().height())
-        self.remove.setIconSize(self.remove.size() * 0.8)
-        shape = column(row((caption, 1), self.remove), self.shape, spacing=3)
+        self.remove.setFixedSize(TOUCH, TOUCH)
+        shape = column(caption, row((self.shape, 1), self.remove, spacing=2), spacing=3)
         row((shape, 14), (self.form.captioned("phi"), 9), (self.form.captioned("weight"), 7), on=self, spacing=8)
 
     def _connect(self) -> None:
@@ -184,7 +183,7 @@ class SettingsPanel(Card):
         self.auto.setText(tr("Auto"))
         self.auto.setCheckable(True)
         self.auto.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-        self.auto.setFixedHeight(29)
+        self.auto.setFixedHeight(TOUCH)
         self.auto.setAccessibleName(tr(auto.spoken))
         self.auto.setToolTip(tr(auto.about))
         self.rows = _voids("rows", tr("Rows"), tr(ROWS, low=SMALLEST_GRID, high=LARGEST_GRID))
@@ -192,10 +191,10 @@ class SettingsPanel(Card):
         self.candidates, self.seed = self.form.whole("k"), self.form.whole("seed")
         self.angle = self.form.decimal("phi")
         self.dice = ToolButton("newSeed", "dice", tr("New random seed."))
-        self.dice.setFixedSize(29, 29)
+        self.dice.setFixedSize(TOUCH, TOUCH)
         self.keep = ToolButton("keepSeed", "keep", tr(KEEP_SEED), checkable=True)
         self.keep.setChecked(True)
-        self.keep.setFixedSize(29, 29)
+        self.keep.setFixedSize(TOUCH, TOUCH)
         self.keep.toggled.connect(self.keep_changed)
         self.symmetry, self.rim = self.form.choice("symmetry"), self.form.choice("rim")
         self.start = ChoiceBox("start", tr("Start as: outline of the flat sheet"), STARTS)

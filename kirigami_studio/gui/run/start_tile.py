@@ -14,7 +14,9 @@ from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import fitted
+from kirigami_studio.gui.widgets.layouts import TOUCH
 from kirigami_studio.gui.widgets.paths import blank, ink, painter_on
+from kirigami_studio.gui.widgets.readable import ShownUnit, readable_size
 from kirigami_studio.gui.widgets.target_items import paint_start_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -42,7 +44,7 @@ OTHER_STARTS = (
 )
 WIDTH = 108
 #: Edge of the button that goes back to the rectangle, and of the pictures in the menu, pixels.
-BACK_EDGE, MENU_EDGE = 20, 22
+BACK_EDGE, MENU_EDGE = TOUCH, 22
 #: Pixels around the picture, and that a line of text takes.
 MARGIN, LINE = 9.0, 17.0
 TIP = mark("Start as: the flat sheet. Click to change it, or drop a file here.")
@@ -122,12 +124,17 @@ class StartTile(QAbstractButton):
     @property
     def size_text(self) -> str:
         """Size of the flat sheet."""
-        return size_words(self._width_mm, self._height_mm)
+        return self._size(self._width_mm, self._height_mm)
 
     @property
     def brief_size(self) -> str:
         """The same in whole millimetres."""
-        return size_words(round(self._width_mm), round(self._height_mm))
+        return self._size(round(self._width_mm), round(self._height_mm))
+
+    def _size(self, width_mm: float, height_mm: float) -> str:
+        if ShownUnit.inches:
+            return readable_size(width_mm, height_mm)
+        return size_words(width_mm, height_mm)
 
     @property
     def _height_mm(self) -> float:
@@ -145,7 +152,7 @@ class StartTile(QAbstractButton):
     def set_palette(self, palette: Palette) -> None:
         self._palette = palette
         self.back.setIcon(icons.icon("close", palette))
-        self.back.setIconSize(QSize(BACK_EDGE - 8, BACK_EDGE - 8))
+        self.back.setIconSize(QSize(BACK_EDGE - 20, BACK_EDGE - 20))
         for name, _, _ in STARTS:
             self.entries[name].setIcon(QIcon())  # drawn again when the menu opens
         self.update()

@@ -28,6 +28,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.project.history import History
 from kirigami_studio.project.sheet_size import cut_for, sized
+from kirigami_studio.project.target_parts import kept_to_scale
 from kirigami_studio.studio.designing import Decoded, KnownAsCut, decoding, ranking_of
 
 #: Designs whose motion is kept; one of 10 x 10 voids takes about 15 kB.
@@ -234,7 +235,7 @@ class Session(QObject):
     def apply(self, edit: Edit) -> None:
         """Make an edit part of the history and show what it changed."""
         before = self.document
-        if self.history.apply(replace(edit, document=sized(edit.document))):
+        if self.history.apply(replace(edit, document=kept_to_scale(before, sized(edit.document)))):
             self.set_status(tr("Done: {label}.", label=edit.label))
             self.announce(before)
 

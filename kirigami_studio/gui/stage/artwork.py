@@ -2,39 +2,58 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from PySide6.QtCore import QObject, Signal
 
-from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.artwork import ArtPicture, Artwork, Laid
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Session
-from kirigami_studio.gui.stage.artwork_painting import ShownArtwork, painting_artwork, reading_artwork
+from kirigami_studio.gui.stage.artwork_painting import (
+    ShownArtwork,
+    ShownPrint,
+    painting_artwork,
+    painting_on_pieces,
+    reading_artwork,
+)
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project import edits
 from kirigami_studio.project.edits import LaidChange
+from kirigami_studio.studio.making import CutRequest, MadePieces, Planned, has_pieces, printed_pieces
+
+if TYPE_CHECKING:
+    from kirigami_studio.evaluate.candidate import Candidate
+    from kirigami_studio.export.artwork_pieces import PrintedPieces
 
 
 class ArtworkKeeper(QObject):
     """Changes the document's artwork, and keeps the painted sheet of the design on the stage up to date."""
 
-    painted = Signal(object)  #: ShownArtwork, or None without artwork or design
+    painted = Signal(object)  #: ShownArtwork or ShownPrint, or None without artwork or design
 
     def __init__(self, session: Session, parent: QObject) -> None:
         super().__init__(parent)
         self._session = session
         self._reading = LatestJob[ArtPicture](session.queue)
-        self._painting = LatestJob[ShownArtwork](session.queue)
-        self._wanted: tuple[Artwork, PosedDesign, Outline | None] | None = None
+        self._painting = LatestJob["ShownArtwork | ShownPrint"](session.queue)
+        self._wanted: tuple[Artwork, object, Outline | None] | None = None
+        self._pieces: tuple[Candidate, PrintedPieces | None] | None = None  # of the design that was planned last
         session.document_changed.connect(self._follow)
         session.display.stage_changed.connect(self._follow)
+
+    def take(self, request: CutRequest, made: Planned | MadePieces) -> None:
+        """The design on the stage was planned: where it is made of pieces, they show the artwork."""
+        printed = printed_pieces(request, made) if request.has_layers else None
+        self._pieces = (request.candidate, printed) if request.has_layers else None
+        self._follow()
 
     def open(self, path: Path) -> None:
         """Read a picture and lay it where the one before lay, or over the opened sheet."""
@@ -108,10 +127,18 @@ class ArtworkKeeper(QObject):
                 self._painting.stop()
                 self.painted.emit(None)
             return
-        wanted = (document.artwork, stage.design, document.target)
-        before = self._wanted
+        steps: Callable[[Cancel], Iterator[ShownArtwork | ShownPrint]]
+        if has_pieces(document.fabrication):
+            candidate, printed = self._pieces or (None, None)
+            if printed is None or candidate is not stage.candidate:
+                return
+            on: object = printed.posed.assembly.deployment
+            steps = partial(painting_on_pieces, document.artwork, printed)
+        else:
+            on, steps = stage.design, partial(painting_artwork, document.artwork, stage.design, document.target)
+        wanted, before = (document.artwork, on, document.target), self._wanted
         if before is not None and all(one is other for one, other in zip(wanted, before, strict=True)):
             return
         self._wanted = wanted
         callbacks = JobCallbacks(self.painted.emit, on_failed=self._session.report_failure)
-        self._painting.start(tr("painting the artwork"), partial(painting_artwork, *wanted), callbacks)
+        self._painting.start(tr("painting the artwork"), steps, callbacks)

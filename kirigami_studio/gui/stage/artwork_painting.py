@@ -1,16 +1,16 @@
-"""Artwork: read from a picture in the worker, painted as a printed flat sheet, and drawn on the moving panels."""
+"""Artwork: read in the worker, painted as a flat sheet, drawn on moving panels and pieces."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QBuffer, QByteArray, QIODevice, QSize, Qt
-from PySide6.QtGui import QBrush, QGuiApplication, QImage, QImageWriter, QPainter, QTransform
+from PySide6.QtGui import QBrush, QGuiApplication, QImage, QImageWriter, QPainter, QPainterPath, QTransform
 from PySide6.QtSvg import QSvgRenderer
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -20,11 +20,13 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.steps import Cancel
 from kirigami_studio.gui.widgets.paths import line_path
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
+from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio import importing
 
 if TYPE_CHECKING:
     from kirigami_studio.export.artwork_patches import PrintedSheet
+    from kirigami_studio.export.artwork_pieces import PrintedPieces
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,6 +38,51 @@ class ShownArtwork:
     image: QImage  #: nothing where nothing is printed
     corner: complex  #: mm; where its upper left corner lies on the flat sheet; y up
     dots_per_mm: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PiecePatch:
+    """A part of a piece that shows a picture."""
+
+    path: QPainterPath  #: frame of the piece, mm
+    image: QImage
+    #: factor, shift: the image's map into the frame of the piece.
+    factor: complex
+    shift: complex
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShownPrint:
+    """The printed pieces of one design."""
+
+    artwork: Artwork
+    deployment: Deployment  #: of the pieces
+    patches: Mapping[str, tuple[PiecePatch, ...]]  #: by the ids of the pieces
+
+
+def paint_patches(
+    painter: QPainter,
+    patches: Sequence[PiecePatch],
+    place: tuple[complex, complex],
+    to_pixels: QTransform,
+    transform: ViewTransform,
+) -> None:
+    """Fill parts of a piece with artwork.
+
+    Parameters
+    ----------
+    place : (factor, shift)
+        From the frame of the piece into the world.
+    to_pixels : QTransform
+        From the frame of the piece.
+    """
+    brush = QBrush()
+    for patch in patches:
+        a = transform.scale * (place[0] * patch.factor).conjugate()
+        b = transform.scale * (place[0] * patch.shift + place[1]).conjugate() + complex(*transform.origin)
+        brush.setTextureImage(patch.image)
+        brush.setTransform(QTransform(a.real, a.imag, -a.imag, a.real, b.real, b.imag))
+        painter.fillPath(to_pixels.map(patch.path), brush)
 
 
 def paint_artwork(
@@ -111,6 +158,42 @@ def painting_artwork(
     image = QImage(pixels.tobytes(), width, height, 4 * width, QImage.Format.Format_RGBA8888)
     shown = image.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)  # its own copy of the pixels
     yield ShownArtwork(artwork, sheet, shown, complex(page.low[0], page.high[1]), page.dots_per_mm)
+
+
+def painting_on_pieces(artwork: Artwork, printed: PrintedPieces, cancel: Cancel) -> Iterator[ShownPrint]:
+    """Lay pictures on pieces; those with lines are engraved, and drawn with the pieces."""
+    importing.import_exporters()
+    import shapely
+
+    from kirigami_studio.evaluate.boundary import as_points
+    from kirigami_studio.export.artwork_patches import patches_of, rings_of
+    from kirigami_studio.export.artwork_raster import image_of
+
+    assembly = printed.posed.assembly
+    shifts = as_points(printed.origins)
+    regions = [shapely.transform(area, lambda points, at=at: points + at)
+               for area, at in zip(printed.areas, shifts, strict=True)]  # fmt: skip
+    images: dict[ArtPicture, tuple[QImage, float]] = {}
+    found: dict[str, list[PiecePatch]] = {}
+    for patch in patches_of(artwork, printed, regions):
+        picture = patch.picture
+        if picture.lines:
+            continue
+        if picture not in images:
+            reduced = image_of(picture.content).copy()
+            reduced.thumbnail((SHOWN_SIDE, SHOWN_SIDE))
+            pixels = QImage(reduced.tobytes(), *reduced.size, 4 * reduced.width, QImage.Format.Format_RGBA8888)
+            own = pixels.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)  # its own copy of the pixels
+            images[picture] = own, picture.size[0] / reduced.width
+        image, share = images[picture]
+        own = patch.moved(1.0, -complex(printed.origins[patch.panel]))
+        path = QPainterPath()
+        for ring in rings_of(own.region):
+            path.addPath(line_path(ring, closed=True))
+        path.setFillRule(Qt.FillRule.OddEvenFill)
+        made = PiecePatch(path, image, own.factor * share, own.shift)
+        found.setdefault(assembly.pieces[patch.panel].id, []).append(made)
+    yield ShownPrint(artwork, assembly.deployment, {name: tuple(made) for name, made in found.items()})
 
 
 def _drawn(renderer: QSvgRenderer, size: QSize) -> QImage:

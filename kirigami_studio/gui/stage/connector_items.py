@@ -74,7 +74,8 @@ class Connectors:
     @cached_property
     def short_side_mm(self) -> float:
         """Short side of a panel smaller than most; without panels, as if the sheet were cut into squares."""
-        sides = [np.linalg.norm(panel - np.roll(panel, 1, axis=0), axis=1).min() for panel in self.plan.panels]
+        kept = [panel for panel in self.plan.panels if len(panel)]  # panels in a hole are given up
+        sides = [np.linalg.norm(panel - np.roll(panel, 1, axis=0), axis=1).min() for panel in kept]
         if sides:
             return float(np.quantile(sides, SMALL))
         width, height = self.plan.size_mm

@@ -20,6 +20,7 @@ from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.void_items import VoidShapes
 from kirigami_studio.gui.widgets.paths import ink, round_pen
+from kirigami_studio.gui.widgets.readable import readable_width
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.lattice.deployment import deploy
@@ -126,23 +127,23 @@ class MouthFacts:
 
     def lines(self) -> tuple[str, str]:
         """The lines of the label at the pointer."""
-        place = tr("{mm:.2f} mm   {cells:.2f} cells", mm=self.position_mm, cells=self.position)
+        place = tr("{place}   {cells:.2f} cells", place=readable_width(self.position_mm), cells=self.position)
         return self.name, place
 
     def sentence(self) -> str:
         """The text for the status line."""
         if self.side % 2 == 0:
             return tr(
-                "{name}: {mm:.2f} mm from the left corner, {cells:.2f} cells ({offset:+.2f} from even).",
+                "{name}: {place} from the left corner, {cells:.2f} cells ({offset:+.2f} from even).",
                 name=self.name,
-                mm=self.position_mm,
+                place=readable_width(self.position_mm),
                 cells=self.position,
                 offset=self.offset,
             )
         return tr(
-            "{name}: {mm:.2f} mm from the upper corner, {cells:.2f} cells ({offset:+.2f} from even).",
+            "{name}: {place} from the upper corner, {cells:.2f} cells ({offset:+.2f} from even).",
             name=self.name,
-            mm=self.position_mm,
+            place=readable_width(self.position_mm),
             cells=self.position,
             offset=self.offset,
         )

@@ -64,12 +64,17 @@ def locked_sentence(count: int) -> str:
 
 def score_sentence(label: str, before: Candidate, after: Candidate) -> str:
     """What a change has done to the match, and what it has cost."""
-    match, gain = 100.0 * after.score.iou_exact, 100.0 * (after.score.iou_exact - before.score.iou_exact)
+    match, gain = 100.0 * after.match, 100.0 * (after.match - before.match)
     sentences = [tr("{gesture}: match {match:.1f} % ({gain:+.2f}).", gesture=label, match=match, gain=gain)]
     if not after.score.feasible:
         sentences.append(tr("Panels overlap or touch while it opens."))
     if before.trim is not None:
-        sentences.append(tr("Trim removed; trim again when you are done."))
+        again = (
+            tr("It is trimmed again.")
+            if after.trim is not None
+            else tr("Trim removed: it cannot be trimmed like this.")
+        )
+        sentences.append(again)
     return " ".join(sentences)
 
 

@@ -19,7 +19,7 @@ from kirigami_studio.evaluate.second_target import SecondMatch
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.session.overlays import USUAL, Overlay
-from kirigami_studio.gui.stage.artwork_painting import ShownArtwork, paint_artwork
+from kirigami_studio.gui.stage.artwork_painting import ShownArtwork, ShownPrint, paint_artwork
 from kirigami_studio.gui.stage.connector_items import STRETCH_TITLE, paint_stretch, stretch_scale
 from kirigami_studio.gui.stage.fault_items import (
     Fault,
@@ -67,6 +67,7 @@ from kirigami_studio.gui.widgets.mismatch_items import (
     paint_mismatch,
     usual_chips,
 )
+from kirigami_studio.gui.widgets.readable import readable_width
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.outline import Outline
@@ -160,7 +161,7 @@ class LayoutView(Canvas):
         self._cut: SimulatedSheet | None = None
         self._as_cut, self._ideal = True, False
         self._made: tuple[SimulatedSheet, PosedDesign] | None = None  #: the sheet as cut over its target
-        self.artwork: ShownArtwork | None = None
+        self.artwork: ShownArtwork | ShownPrint | None = None
         self._pieces: PosedPieces | None = None
         self._tiles: PosedPieces | None = None  #: on the panels of a hinge layer
         self._grips = GRIPS_UNKNOWN
@@ -262,8 +263,8 @@ class LayoutView(Canvas):
             self._made = (sheet, design if sheet.made is None else design.laid_over(sheet.made))
         return sheet.motion.pose(self._made[1], self.phi)
 
-    def show_artwork(self, shown: ShownArtwork | None) -> None:
-        """Show the printed sheet of a design on its panels; None where nothing is printed."""
+    def show_artwork(self, shown: ShownArtwork | ShownPrint | None) -> None:
+        """Show the print of a design on its panels or pieces; None where nothing is printed."""
         self.artwork = shown
         self.update()
 
@@ -419,7 +420,8 @@ class LayoutView(Canvas):
         else:
             paint_cut_panels(painter, pose, transform, panels, turning, palette)
         if self._tiles is not None:
-            paint_pieces(painter, self._tiles, self.phi if pose is None else pose.phi, transform, self.palette_)
+            phi = self.phi if pose is None else pose.phi
+            paint_pieces(painter, self._tiles, phi, transform, self.palette_, self._print_on(painter, self._tiles))
         if artwork is not None:
             paint_artwork(painter, artwork, self.phi, panels, trimmed, transform)
         self._paint_voids(painter, transform, nodes)
@@ -433,7 +435,7 @@ class LayoutView(Canvas):
 
     def _paint_pieces(self, painter: QPainter, transform: ViewTransform, pieces: PosedPieces) -> None:
         self.areas, self.faults = None, ()
-        paint_pieces(painter, pieces, self.phi, transform, self.palette_)
+        paint_pieces(painter, pieces, self.phi, transform, self.palette_, self._print_on(painter, pieces))
         if pieces.grips is not None and Overlay.GRIPS in self.overlays:
             held, pulled = pieces.grips
             places = grip_places(pieces.design, (held,), (pulled,), self.phi, pieces.design.phi_target)
@@ -447,7 +449,18 @@ class LayoutView(Canvas):
     def _painted_artwork(self, painter: QPainter) -> ShownArtwork | None:
         """The artwork, unless it belongs to another design, hides an overlay, or cannot be drawn as lines."""
         shown = self.artwork
-        if shown is None or shown.sheet.design is not self.design or Overlay.RATIOS in self.overlays:
+        if (
+            not isinstance(shown, ShownArtwork)
+            or shown.sheet.design is not self.design
+            or Overlay.RATIOS in self.overlays
+        ):
+            return None
+        return None if painter.paintEngine().type() is QPaintEngine.Type.SVG else shown
+
+    def _print_on(self, painter: QPainter, pieces: PosedPieces) -> ShownPrint | None:
+        """The print on pieces, unless it belongs to others, or cannot be drawn as lines."""
+        shown = self.artwork
+        if not isinstance(shown, ShownPrint) or shown.deployment is not pieces.assembly.deployment:
             return None
         return None if painter.paintEngine().type() is QPaintEngine.Type.SVG else shown
 
@@ -501,7 +514,7 @@ class LayoutView(Canvas):
         if Overlay.GRIPS not in self.overlays:
             return []
         if self._pieces is not None and self._pieces.grips is not None:
-            held, pulled = (self._pieces.assembly.pieces[panel].id for panel in self._pieces.grips)
+            held, pulled = (self._pieces.assembly.piece_on(panel).id for panel in self._pieces.grips)
             return [
                 Chip((palette.text,), tr("hold {piece}", piece=held)),
                 Chip((palette.good,), tr("pull {piece}", piece=pulled)),
@@ -549,7 +562,7 @@ class LayoutView(Canvas):
             paint_dimension(
                 painter,
                 ends,
-                tr("{length_mm:.2f} mm", length_mm=length * self.mm_per_unit),
+                readable_width(length * self.mm_per_unit),
                 self.palette_,
                 occupied,
             )

@@ -15,6 +15,7 @@ from kirigami_studio.assembly.posed_pieces import GLINT, HEAD_RIM, rings_of, sha
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.fabricate.hold import HeldState
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.gui.stage.artwork_painting import ShownPrint, paint_patches
 from kirigami_studio.gui.widgets.paths import line_path
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 #: Designs whose outlines are kept as paths: those of a gallery and of a comparison.
 KEPT_PATHS = 128
+#: Width of a line of artwork, mm.
+DRAWN_MM = 0.3
 #: Faces in the dark theme, against the light one.
 DIMMED = 0.86
 #: A shadow is drawn so many times, each farther off, and so dark (of 255) each time.
@@ -43,6 +46,18 @@ def _paths(assembly: Assembly) -> tuple[QPainterPath, ...]:
     return tuple(piece_path(rings_of(piece)) for piece in assembly.pieces)
 
 
+@lru_cache(maxsize=KEPT_PATHS)
+def _drawn_paths(assembly: Assembly) -> tuple[QPainterPath, ...]:
+    """Lines of artwork in the frames of the pieces, mm."""
+    found = []
+    for piece in assembly.pieces:
+        path = QPainterPath()
+        for line in piece.drawn:
+            path.addPath(line_path(line, closed=False))
+        found.append(path)
+    return tuple(found)
+
+
 def piece_path(rings: Sequence[FloatArray]) -> QPainterPath:
     """An outline with openings and holes, each ring (L, 2)."""
     path = QPainterPath()
@@ -58,10 +73,18 @@ def colour_of(shade: Shade, palette: Palette) -> QColor:
 
 
 def paint_pieces(
-    painter: QPainter, pieces: PosedPieces, phi: float, transform: ViewTransform, palette: Palette
+    painter: QPainter,
+    pieces: PosedPieces,
+    phi: float,
+    transform: ViewTransform,
+    palette: Palette,
+    shown_print: ShownPrint | None = None,
 ) -> None:
-    """Draw all layers and the heads of pins at an angle (radians)."""
-    shown = _shown(pieces, phi, transform)
+    """Draw all layers, what is printed on them, and the heads of pins at an angle (radians)."""
+    places = [(complex(factor), complex(shift)) for factor, shift in zip(*pieces.places(phi), strict=True)]
+    to_pixels = _to_pixels(places, transform)
+    shown = [to_pixel.map(path) for to_pixel, path in zip(to_pixels, _paths(pieces.assembly), strict=True)]
+    drawn = _drawn_paths(pieces.assembly)
     fall = min(max(pieces.shadow * transform.scale, SHORTEST), LONGEST)
     per_mm = transform.scale / pieces.mm_per_world
     pen = QPen(colour_of(pieces.look.line, palette), 1.0 if per_mm > 1.0 else 0.5)
@@ -72,6 +95,14 @@ def paint_pieces(
         painter.setBrush(colour_of(pieces.look.layer(place, len(pieces.layers)), palette))
         for number in layer:
             painter.drawPath(shown[number])
+        for number in () if shown_print is None else layer:
+            patches = shown_print.patches.get(pieces.assembly.pieces[number].id, ()) if shown_print else ()
+            paint_patches(painter, patches, places[number], to_pixels[number], transform)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QPen(colour_of(pieces.look.number, palette), max(1.0, DRAWN_MM * per_mm)))
+        for number in layer:
+            if not drawn[number].isEmpty():
+                painter.drawPath(to_pixels[number].map(drawn[number]))
     heads = transform.to_pixels(pieces.heads(phi))
     if len(heads):
         places = [QPointF(x, y) for x, y in heads.tolist()]
@@ -107,14 +138,11 @@ def _paint_holds(
             painter.drawText(QPointF(x + radius, y), f"{hold.number}")
 
 
-def _shown(pieces: PosedPieces, phi: float, transform: ViewTransform) -> list[QPainterPath]:
-    """The outline of every piece in pixels."""
-    factors, shifts = pieces.places(phi)
+def _to_pixels(places: Sequence[tuple[complex, complex]], transform: ViewTransform) -> list[QTransform]:
+    """From the frames of pieces, by their factors and shifts into the world, to pixels."""
     scale, (left, top) = transform.scale, transform.origin
-    placed = zip(_paths(pieces.assembly), (scale * factors).tolist(), (scale * shifts).tolist(), strict=True)
-    return [
-        QTransform(a.real, -a.imag, -a.imag, -a.real, left + b.real, top - b.imag).map(path) for path, a, b in placed
-    ]
+    placed = [(scale * factor, scale * shift) for factor, shift in places]
+    return [QTransform(a.real, -a.imag, -a.imag, -a.real, left + b.real, top - b.imag) for a, b in placed]
 
 
 def _paint_shadow(painter: QPainter, paths: list[QPainterPath], fall: float) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Entry, Session
@@ -45,8 +46,10 @@ class PieceReader(QObject):
         super().__init__(parent)
         self._session, self._running = session, running
         self._job = LatestJob["tuple[CutRequest, PosedPieces | None]"](session.queue)
-        self._known: dict[Candidate, tuple[FabricationSettings, PosedPieces | None]] = {}
+        # How they are cut; None where artwork has changed since.
+        self._known: dict[Candidate, tuple[FabricationSettings | None, PosedPieces | None]] = {}
         self._target: Outline | None = None
+        self._artwork: Artwork | None = None
         self._document: Document | None = None  # that the following belongs to
         self._made_of_pieces, self._cut = False, FabricationSettings()
         self._cuts: dict[Candidate, FabricationSettings] = {}  # of designs that were asked for
@@ -102,6 +105,9 @@ class PieceReader(QObject):
         if document.target != self._target:
             self._target, self._known = document.target, {}
             self._waiting.clear()
+        if document.artwork != self._artwork:
+            self._artwork = document.artwork
+            self._known = {candidate: (None, pieces) for candidate, (_, pieces) in self._known.items()}
 
     def _cut_of(self, candidate: Candidate) -> FabricationSettings:
         """How a design is cut; each has its own width where all open to one size."""
@@ -125,7 +131,9 @@ class PieceReader(QObject):
         del self._waiting[candidate]
         self._in_work = {candidate: self._cut_of(candidate)}
         entry, document = self._session.cache.entry(candidate), self._session.document
-        request = CutRequest(candidate, entry.design.deployment, document.target, self._in_work[candidate])
+        request = CutRequest(
+            candidate, entry.design.deployment, document.target, self._in_work[candidate], document=document
+        )
         callbacks = JobCallbacks(self._on_result, self._go_on, on_failed=lambda *_: self._go_on())
         self._job.start(tr("making the pieces of a design"), partial(picturing, (request,)), callbacks)
 
@@ -136,5 +144,6 @@ class PieceReader(QObject):
     def _on_result(self, report: tuple[CutRequest, PosedPieces | None]) -> None:
         request, pieces = report
         if request.target == self._target:
-            self._known[request.candidate] = request.settings, pieces
+            current = request.artwork == self._artwork
+            self._known[request.candidate] = request.settings if current else None, pieces
             self.changed.emit()

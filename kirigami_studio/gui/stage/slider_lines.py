@@ -14,7 +14,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.as_cut import AsCutState
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.fitted_text import fitted
-from kirigami_studio.gui.widgets.layouts import row
+from kirigami_studio.gui.widgets.layouts import TOUCH, row
 from kirigami_studio.gui.widgets.paths import ink, painter_on
 from kirigami_studio.gui.widgets.target_items import paint_start_shape, paint_target_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
@@ -95,7 +95,7 @@ class EndButton(QAbstractButton):
         self.update()
 
     def sizeHint(self) -> QSize:  # noqa: N802 - Qt's name
-        return QSize(160, PICTURE + 4)
+        return QSize(160, max(PICTURE + 4, TOUCH))
 
     def drawn_text(self) -> str:
         """What is shown at the present width."""

@@ -16,6 +16,7 @@ from kirigami_studio.foundation.words import number, tr
 from kirigami_studio.gui.widgets.legends import paint_chip
 from kirigami_studio.gui.widgets.mismatch_items import stripes
 from kirigami_studio.gui.widgets.paths import ink, line_path, round_pen
+from kirigami_studio.gui.widgets.readable import TIMES, in_unit, readable_width
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.lattice.deployment import Deployment
@@ -145,14 +146,14 @@ class VoidFacts:
         else:
             first = tr("Void ({row}, {column})   x {ratio:.3f}", row=row, column=column, ratio=self.ratio)
         angle, edges = math.degrees(self.angle), self._edges()
-        return first, tr("{angle:.1f}°   {edges} mm", angle=angle, edges=edges)
+        return first, f"{number(angle, '.1f')}°   {edges}"
 
     def sentence(self) -> str:
         """The text for the status line."""
         (row, column), angle, edges = self.void, math.degrees(self.angle), self._edges()
         if self.locked:
             return tr(
-                "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges} mm, "
+                "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges}, "
                 "locked.",
                 row=row,
                 column=column,
@@ -161,7 +162,7 @@ class VoidFacts:
                 edges=edges,
             )
         return tr(
-            "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges} mm.",
+            "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges}.",
             row=row,
             column=column,
             ratio=self.ratio,
@@ -171,7 +172,7 @@ class VoidFacts:
 
     def _edges(self) -> str:
         """Opposite edges are equal: a void is a parallelogram."""
-        return f"{number(self.edges_mm[0], '.2f')} \N{MULTIPLICATION SIGN} {number(self.edges_mm[1], '.2f')}"
+        return f"{in_unit(self.edges_mm[0], 2)} {TIMES} {readable_width(self.edges_mm[1])}"
 
 
 def paint_marked(painter: QPainter, shapes: VoidShapes, voids: Iterable[Void], palette: Palette, width: float) -> None:

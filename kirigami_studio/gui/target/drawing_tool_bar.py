@@ -282,6 +282,8 @@ TOOLS: tuple[tuple[Tool, str, str] | None, ...] = (
     (Tool.STAR, "star", mark("Draw a star (S). Shift keeps it regular.")),
     (Tool.TEXT, "text", mark("Draw text (X). Letters are moved together into one piece.")),
 )
+#: Tools that draw nothing.
+IDLE = frozenset({Tool.LOOK, Tool.POINTS, Tool.POSE})
 #: Mode, icon, tooltip.
 MODES = (
     (Combine.NEW, "replace", mark("New (Alt+1). What you draw is another object.")),
@@ -310,6 +312,7 @@ class DrawingToolBar(QWidget):
     def __init__(self, context: SketchContext, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._context = context
+        self._tool, self._draws = Tool.LOOK, Tool.RECTANGLE  # in use; the last one that draws
         self.buttons: dict[Tool, QToolButton] = {}
         self.modes: dict[Combine, QToolButton] = {}
         parts: list[Part] = [*self._made_tools(), _rule(), *self._made_modes(), _rule()]
@@ -347,10 +350,16 @@ class DrawingToolBar(QWidget):
         group = QButtonGroup(self)
         for mode, icon, tip in MODES:
             button = self.modes[mode] = ToolButton(mode.value, icon, tr(tip), True)
-            button.clicked.connect(lambda _=False, mode=mode: self.set_mode(mode))
+            button.clicked.connect(lambda _=False, mode=mode: self.take_mode(mode))
             group.addButton(button)
             yield button
         self.modes[self._context.combine].setChecked(True)
+
+    def take_mode(self, mode: Combine) -> None:
+        """Set what happens with the next shape, and take the tool of the last one where none that draws is held."""
+        self.set_mode(mode)
+        if mode is not Combine.NEW and self._tool in IDLE:
+            self.tool_wanted.emit(self._draws)
 
     def set_mode(self, mode: Combine) -> None:
         """What happens with the next shape."""
@@ -360,6 +369,9 @@ class DrawingToolBar(QWidget):
 
     def show_tool(self, tool: Tool) -> None:
         """Mark the tool in use and show its numbers."""
+        self._tool = tool
+        if tool not in IDLE:
+            self._draws = tool
         for own, button in self.buttons.items():
             button.setChecked(own is tool)
         self.options.show_tool(tool)

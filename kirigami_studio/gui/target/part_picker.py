@@ -31,6 +31,7 @@ from kirigami_studio.outlines.merging import USUAL_BRIDGE, USUAL_STROKE, Join, M
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.parts import DrawnPartKind, Part, SourceParts, Strokes
 from kirigami_studio.studio.parts import PartsRead, Purpose, merging_parts, picking_object, places_in
+from kirigami_studio.studio.targets import pieces_of
 
 SIZE, LIST_WIDTH, PICTURE = QSize(980, 620), 310, QSize(40, 40)
 NUMBER = Qt.ItemDataRole.UserRole
@@ -47,6 +48,12 @@ JOINS = (
     (Join.UNION, mark("No bridges"), mark("What touches becomes one shape; of several pieces the largest is taken.")),
     (Join.HULL, mark("Hull"), mark("The outline of a rubber band around all chosen parts.")),
     (Join.TIGHT, mark("Tight hull"), mark("An outline around all chosen parts that follows them into hollows.")),
+)
+#: The way to take several parts that targets alone have.
+SEPARATE = (
+    Join.EACH,
+    mark("Separate sheets"),
+    mark("Every piece becomes a sheet of its own; all open to one scale and lie in one cut file."),
 )
 #: The button that takes the parts, and what is said of their outline.
 TAKE = {
@@ -97,6 +104,7 @@ class PartPicker(QDialog):
     """
 
     taken = Signal(Outline, bool)  #: whether it is what is taken without asking
+    pieces_taken = Signal(object)  #: several of :class:`PieceRead`, each a sheet of its own
 
     def __init__(self, parent: QWidget, queue: JobQueue) -> None:
         super().__init__(parent)
@@ -204,6 +212,11 @@ class PartPicker(QDialog):
         for field, share in ((self.bridge, USUAL_BRIDGE), (self.stroke, USUAL_STROKE)):
             self._set_range(field, share)
         with QSignalBlocker(self.join), QSignalBlocker(self.painted):
+            offered = self.join.row_of(Join.EACH)
+            if purpose is Purpose.TARGET and offered < 0:
+                self.join.add_choices((SEPARATE,))
+            elif purpose is not Purpose.TARGET and offered >= 0:
+                self.join.removeItem(offered)
             self.join.choose(Join.BRIDGE)
             self.painted.setChecked(_as_painted(source))
         self._fill_holes = None
@@ -388,10 +401,17 @@ class PartPicker(QDialog):
         assert self._read is not None
         self.result_ = found
         self.view.show_result(found)
-        self.fill.setVisible(bool(found.outline.holes or found.outline.filled_holes))
-        self.fill.setChecked(not found.outline.holes)
+        outlines = [one.outline for one in found.all]
+        self.fill.setVisible(any(outline.holes or outline.filled_holes for outline in outlines))
+        self.fill.setChecked(not any(outline.holes for outline in outlines))
         unit = self._read.source.unit
-        if found.outline.size is not None:
+        if found.others:
+            names = ", ".join(one.outline.name for one in found.all)
+            self.size_.setText(
+                tr_n("The target will be {count} sheet: {names}.", "The target will be {count} sheets: {names}.",
+                     len(found.all), names=names)
+            )  # fmt: skip
+        elif found.outline.size is not None:
             self.size_.setText(tr(TAKE[self._purpose][1], size=_size(found.outline.size, unit)))
         self._say(found.outline.notes, wrong=False)
         if self._accepts:
@@ -417,6 +437,9 @@ class PartPicker(QDialog):
                 and self._as_painted == (source is not None and source.choice.as_painted)
             )
             self.accept()
+            if self.result_.others:
+                self.pieces_taken.emit(pieces_of(self.result_))
+                return
             self.taken.emit(self.result_.outline, usual and self.merging.join not in HULLS)
 
     def _stop(self) -> None:

@@ -89,8 +89,9 @@ class PartView(QWidget):
         """From the source to pixels; the result is inside, too."""
         left, bottom, right, top = bounds_of(self._read) if self._read is not None else (0.0, 0.0, 1.0, 1.0)
         if self._result is not None:
-            one, two, three, four = self._result.shape.bounds
-            left, bottom, right, top = min(left, one), min(bottom, two), max(right, three), max(top, four)
+            for piece in self._result.all:
+                one, two, three, four = piece.shape.bounds
+                left, bottom, right, top = min(left, one), min(bottom, two), max(right, three), max(top, four)
         return ViewTransform.fitting(Bounds(left, bottom, right, top), QRectF(self.rect()), MARGIN)
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
@@ -122,7 +123,9 @@ class PartView(QWidget):
                     )
         if self._result is not None and self._chosen:
             bridges = [area_path(bridge, transform) for bridge in self._result.bridges]
-            paint_result(painter, area_path(self._result.shape, transform), bridges, self.palette_, stale=self._stale)
+            for piece in self._result.all:
+                shape = area_path(piece.shape, transform)
+                paint_result(painter, shape, bridges, self.palette_, stale=self._stale)
         if self._read.photo is not None:
             self._paint_strokes(painter, self._read.photo)
 

@@ -14,6 +14,7 @@ from kirigami_studio.foundation.errors import TargetError
 from kirigami_studio.foundation.words import mark, tr, tr_n
 from kirigami_studio.gui.target.sketch_context import Change, PointerEvent, SketchContext, SketchTool, distance
 from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.readable import readable_place
 from kirigami_studio.gui.widgets.target_items import paint_field, paint_handle, paint_label, paint_proposal
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -392,7 +393,7 @@ class PointTool(SketchTool):
         if self._dragged is not None and self._grip is Grip.POINTS and self.chosen is not None:
             place = anchors.places[self.chosen]
             x, y = transform.to_pixels(place).tolist()
-            paint_label(painter, QPointF(x, y), tr("{x:.4g}, {y:.4g} mm", x=place[0], y=place[1]), palette)
+            paint_label(painter, QPointF(x, y), readable_place(*place), palette)
         if self._field is not None:
             paint_field(painter, self._field[0].pixel, self._field[1].pixel, palette)
 

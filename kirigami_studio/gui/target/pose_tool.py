@@ -20,6 +20,7 @@ from kirigami_studio.gui.target.sketch_context import (
     distance,
 )
 from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.readable import readable_place
 from kirigami_studio.gui.widgets.target_items import paint_field, paint_label, paint_proposal, paint_size
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -264,7 +265,7 @@ class PoseTool(SketchTool):
             paint_label(
                 painter,
                 QPointF(x, y),
-                tr("{x:.4g}, {y:.4g} mm", x=middle[0], y=middle[1]),
+                readable_place(*middle),
                 palette,
             )
         elif grip == TURN:

@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QPainter, QPen
 from kirigami_studio.foundation.words import number, tr
 from kirigami_studio.gui.target.sketch_context import SketchContext
 from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.readable import ShownUnit, round_step
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 
@@ -128,7 +129,7 @@ class Rulers:
         small.setPointSizeF(0.75 * font.pointSizeF())
         painter.setFont(small)
         painter.setPen(QPen(QColor(palette.muted), 1.0))
-        step = _step(NUMBER_STEP / transform.scale)
+        step = round_step(NUMBER_STEP / transform.scale, ShownUnit.mm())
         ends = sorted(transform.to_world(QPointF(*spot))[axis] for spot in ((0.0, 0.0), (area.width(), area.height())))
         for tick in range(math.floor(5 * ends[0] / step), math.ceil(5 * ends[1] / step) + 1):
             at, numbered = tick * step / 5, tick % 5 == 0
@@ -139,7 +140,7 @@ class Rulers:
                 painter.drawLine(QPointF(pixel, RULER - reach), QPointF(pixel, RULER))
             else:
                 painter.drawLine(QPointF(RULER - reach, pixel), QPointF(RULER, pixel))
-            written = number(at + 0.0, ".6g")
+            written = number(at / ShownUnit.mm() + 0.0, ".6g")
             if numbered and fits(axis, pixel, painter.fontMetrics().horizontalAdvance(written), length):
                 painter.save()
                 painter.translate(*((pixel + 3, 11.0) if axis == X else (11.0, pixel - 3)))
@@ -156,9 +157,3 @@ def fits(axis: int, pixel: float, room: int, length: float) -> bool:
 
 def _pixel(transform: ViewTransform, axis: int, at: float) -> float:
     return transform.origin[axis] + (transform.scale if axis == X else -transform.scale) * at
-
-
-def _step(least: float) -> float:
-    """1, 2 or 5 times a power of ten, at least so much."""
-    power = 10.0 ** math.floor(math.log10(least))
-    return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= least * (1 - 1e-9))

@@ -13,6 +13,7 @@ from PySide6.QtGui import QKeyEvent, QPainter
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.target.arrangements import EVERY
+from kirigami_studio.gui.widgets.readable import ShownUnit, round_step
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.combining import Combine
@@ -152,10 +153,8 @@ class SketchContext(QObject):
 
     @property
     def step(self) -> float:
-        """Distance of the grid's lines, mm: 1, 2 or 5 times a power of ten."""
-        least = CLOSEST_LINES / self.transform.scale
-        power = 10.0 ** math.floor(math.log10(least))
-        return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= least * (1 - 1e-9))
+        """Distance of the grid's lines, mm: 1, 2 or 5 times a power of ten mm or inches."""
+        return round_step(CLOSEST_LINES / self.transform.scale, ShownUnit.mm())
 
     def pointer(self, pixel: QPointF, modifiers: Qt.KeyboardModifier) -> PointerEvent:
         """Where a pixel lies on the board; Ctrl suspends snapping."""

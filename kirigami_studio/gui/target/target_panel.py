@@ -15,8 +15,8 @@ from kirigami_studio.gui.target.arrangements import EVERY
 from kirigami_studio.gui.target.drawing_tool_bar import DrawingToolBar, LooseRow
 from kirigami_studio.gui.target.target_view import TargetView, Tool
 from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton, compact
-from kirigami_studio.gui.widgets.layouts import Part, label, push_button, row, slider
-from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field
+from kirigami_studio.gui.widgets.layouts import TOUCH, Part, label, push_button, row, slider
+from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field, names_length
 from kirigami_studio.gui.widgets.readable import TIMES, readable_size
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
@@ -44,8 +44,10 @@ class OpenedSizeRow(QWidget):
         self.caption = label(tr("&Opened size"), self.width_)
         self.caption.setMinimumWidth(self.caption.sizeHint().width())
         self.drawn = ToolButton("drawnSize", "chain", tr("Back to the drawn size."))
-        self.drawn.setFixedSize(29, 29)
-        sides = ((self.width_, 1), label(TIMES), (self.height_, 1), label(tr("mm")))
+        self.drawn.setFixedSize(TOUCH, TOUCH)
+        self.unit = label(tr("mm"))
+        names_length(self.unit)
+        sides = ((self.width_, 1), label(TIMES), (self.height_, 1), self.unit)
         row(self.caption, 4, *sides, self.drawn, on=self, spacing=4)
         self.width_.valueChanged.connect(lambda width: self._report(width, 0))
         self.height_.valueChanged.connect(lambda height: self._report(height, 1))
@@ -140,10 +142,11 @@ class TargetPanel(Card):
         self.facts, self.size_ = ElidedLabel(), label()
         self.notes = label(name="warning", wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.reach, self.start_refusal = ElidedLabel(), ElidedLabel()
+        self.reach, self.start_refusal, self.limit = ElidedLabel(), ElidedLabel(), ElidedLabel()
         self.reach.setAccessibleName(tr("Details that the grid may miss"))
         self.start_refusal.setAccessibleName(tr("Why the next run would refuse the start"))
-        for warning in (self.reach, self.start_refusal):
+        self.limit.setAccessibleName(tr("What no closed sheet shows of the target"))
+        for warning in (self.reach, self.start_refusal, self.limit):
             warning.setObjectName("warning")
             warning.setVisible(False)
         self.threshold, self.start, self.opened = ThresholdBar(), StartTile(), OpenedSizeRow()
@@ -154,7 +157,7 @@ class TargetPanel(Card):
         self.body.addWidget(self.tools)
         self.body.addLayout(row(self.start, (self.view, 1), spacing=8), 1)
         self.body.addLayout(row((self.facts, 1), self.size_))
-        warnings = (self.start_refusal, self.reach)
+        warnings = (self.start_refusal, self.reach, self.limit)
         for part in (self.opened, *warnings, self.fill, self.refine, self.threshold, self.notes, self.loose):
             self.body.addWidget(part)
         self.view.context.selection_changed.connect(self._show_selection)
@@ -281,6 +284,12 @@ class TargetPanel(Card):
         """Say why the next run would refuse the start; nothing where it would not, or that is not known."""
         self.start_refusal.setText(sentence, tr("The start folds on this grid"))
         self.start_refusal.setVisible(bool(sentence))
+
+    def show_limit(self, sentence: str) -> None:
+        """Say what no closed sheet shows of the target; "" for nothing."""
+        self.limit.setText(sentence)
+        self.limit.setToolTip(sentence)
+        self.limit.setVisible(bool(sentence))
 
     def _show_reach_text(self) -> None:
         whole, brief = self._reach_texts

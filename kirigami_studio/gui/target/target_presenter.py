@@ -26,6 +26,7 @@ from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import size_of, target_as_cut
+from kirigami_studio.studio.designing import limit_of
 from kirigami_studio.studio.two_states import flat_size, starts_as
 
 
@@ -186,6 +187,8 @@ class TargetPresenter(QObject):
             self._show_target(document)
         elif document.settings.grid != before.settings.grid:
             self._panel.show_reach(document.settings.grid)
+        limit = limit_of(document)
+        self._panel.show_limit("" if limit is None else limit.text)
         if document.guides != before.guides:
             self._panel.view.context.show_guides(document.guides)
 

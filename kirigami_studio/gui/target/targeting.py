@@ -25,7 +25,7 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.read import has_parts, is_picture
 from kirigami_studio.outlines.starts import StartShape
-from kirigami_studio.project import edits
+from kirigami_studio.project import edits, target_parts
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit
 from kirigami_studio.settings.design import DesignSettings
@@ -39,6 +39,7 @@ from kirigami_studio.studio.parts import (
 )
 from kirigami_studio.studio.targets import (
     Picture,
+    PieceRead,
     TargetRead,
     checking_start,
     making_start,
@@ -137,6 +138,7 @@ class SourceReader(QObject):
     """
 
     read = Signal(Outline, ReadReason)
+    pieces_read = Signal(object, ReadReason)  #: several of :class:`PieceRead`, each a sheet of its own
     choice_wanted = Signal(PartsRead)
     design_read = Signal(Document, str)  #: that a cut file came from, and the file
     failed = Signal(str, str)  #: sentence, trace
@@ -171,6 +173,14 @@ class SourceReader(QObject):
             return
         self._finish(*self._asked, TargetRead(outline))
 
+    def take_pieces(self, pieces: tuple[PieceRead, ...]) -> None:
+        """Take the pieces of a drawing, each a sheet of its own."""
+        source, reason = self._asked
+        for piece in pieces:
+            self._remember(source, piece.outline)
+        self.source = source
+        self.pieces_read.emit(pieces, reason)
+
     def _start(self, source: str, reason: ReadReason, steps: Steps[TargetRead | PartsRead | DesignRead]) -> None:
         callbacks = JobCallbacks(partial(self._on_result, source, reason), on_failed=self.failed.emit)
         self._job.start(tr("reading {name}", name=Path(source).name), steps, callbacks)
@@ -190,13 +200,16 @@ class SourceReader(QObject):
 
     def _finish(self, source: str, reason: ReadReason, found: TargetRead) -> None:
         if has_parts(Path(source)):
-            self.drawings[found.outline] = source
-            while len(self.drawings) > CAPACITY:
-                self.drawings.popitem(last=False)
+            self._remember(source, found.outline)
         if found.picture is not None:
             self._tracer.remember(found.outline, found.picture)
         self.source = source
         self.read.emit(found.outline, reason)
+
+    def _remember(self, source: str, outline: Outline) -> None:
+        self.drawings[outline] = source
+        while len(self.drawings) > CAPACITY:
+            self.drawings.popitem(last=False)
 
 
 class OutlineReader(QObject, Generic[T]):
@@ -320,6 +333,7 @@ class Targeting(QObject):
         self.tracer = PictureTracer(session, self)
         self.reader = SourceReader(session, self.tracer, self)
         self.reader.read.connect(self._on_read)
+        self.reader.pieces_read.connect(self._on_pieces)
         self.reader.failed.connect(session.report_failure)
         self.tracer.traced.connect(self._on_traced)
         self.tracer.refused.connect(session.set_status)
@@ -380,7 +394,8 @@ class Targeting(QObject):
         """Start over with an empty target."""
         document = self._session.document
         if document.target is not None:
-            self._replace(Edit(tr("Clear target"), edits.without_designs(document, None)))
+            cleared = replace(edits.without_designs(document, None), **edits.ALONE)
+            self._replace(Edit(tr("Clear target"), cleared))
             self._session.set_status(tr("Target cleared. Undo restores it."))
 
     def _replace(self, edit: Edit) -> None:
@@ -418,6 +433,14 @@ class Targeting(QObject):
             self.question_wanted.emit(outline)
         else:
             self.set_target(outline)
+
+    def _on_pieces(self, pieces: tuple[PieceRead, ...], reason: ReadReason) -> None:
+        """Take the pieces of a drawing as a target of several parts."""
+        self._replace(target_parts.set_parts(self._session.document, [(one.outline, one.place) for one in pieces]))
+        self.source_read.emit(self.reader.source)
+        names = ", ".join(one.outline.name for one in pieces)
+        said = tr("Target: {names}. Press Generate (Ctrl+G) to design a sheet for each part.", names=names)
+        self._session.set_status(said)
 
     def set_target(self, outline: Outline) -> None:
         """Take a target that was read in the place of the present one."""

@@ -6,11 +6,25 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
+from functools import cache
 
 import numpy as np
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtCore import QObject, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QAccessible,
+    QAccessibleInterface,
+    QColor,
+    QFocusEvent,
+    QFont,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPixmap,
+    QResizeEvent,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QAccessibleWidget, QSizePolicy, QWidget
 
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.paths import blank, ink, painter_on
@@ -47,7 +61,8 @@ class Canvas(QWidget):
         self.rendering = False  #: whether it is drawn into a picture instead of the screen
         self._background: tuple[tuple[int, int, float, str], QPixmap] | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self._by_tab = False  # whether it got the keyboard by the Tab key, which shows where it is
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
 
     # for subclasses to override --------------------------------------------------------------------------------------
 
@@ -182,11 +197,24 @@ class Canvas(QWidget):
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
         self.fit()
 
+    def focusInEvent(self, event: QFocusEvent) -> None:  # noqa: N802 - Qt's name
+        super().focusInEvent(event)
+        self._by_tab = event.reason() in (Qt.FocusReason.TabFocusReason, Qt.FocusReason.BacktabFocusReason)
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:  # noqa: N802 - Qt's name
+        super().focusOutEvent(event)
+        self._by_tab = False
+
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = painter_on(self)
-        self._paint_background(painter)
-        self._paint_content(painter)
-        painter.end()
+        try:
+            self._paint_background(painter)
+            self._paint_content(painter)
+            if self._by_tab:
+                ink(painter, self.palette_.accent, 2.0)
+                painter.drawRoundedRect(QRectF(self.rect()).adjusted(1.0, 1.0, -1.0, -1.0), 7, 7)
+        finally:  # Qt crashes over a widget whose painter was left open by an error
+            painter.end()
 
     # drawing -------------------------------------------------------------------------------------------------------
 
@@ -268,3 +296,13 @@ class Canvas(QWidget):
         painter.setPen(QColor(self.palette_.muted))
         if used.bottom() + below <= self.height():
             painter.drawText(QRectF(box.left(), used.bottom() + 6, box.width(), 1000.0), flags, hint)
+
+
+@cache
+def name_roles() -> None:
+    """Let screen readers call canvases so: a widget that is painted has no role of its own."""
+    QAccessible.installFactory(_interface_of)
+
+
+def _interface_of(_: str, of: QObject) -> QAccessibleInterface | None:
+    return QAccessibleWidget(of, QAccessible.Role.Canvas) if isinstance(of, Canvas) else None

@@ -156,7 +156,9 @@ class ScrolledWhenShort(QScrollArea):
         return self._content.sizeHint()
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
-        return QSize(self._content.minimumSizeHint().width(), min(self._least, self.sizeHint().height()))
+        # The bar stands beside the content, not on it.
+        width = self._content.minimumSizeHint().width() + self.verticalScrollBar().sizeHint().width()
+        return QSize(width, min(self._least, self.sizeHint().height()))
 
 
 def compact(box: QAbstractSpinBox, width: int = 62) -> None:

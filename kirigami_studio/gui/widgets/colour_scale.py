@@ -14,6 +14,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import mark, number, tr
 from kirigami_studio.gui.widgets.legends import paint_chip
 from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.readable import ShownUnit
 from kirigami_studio.gui.widgets.theme import Palette
 
 #: Shades of a scale; neighbours cannot be told apart.
@@ -69,8 +70,9 @@ def ratio_scale(ratio: FloatArray, palette: Palette) -> ColourScale:
 
 def opening_scale(largest_mm2: float, palette: Palette) -> ColourScale:
     """The scale of void areas, from closed to the largest that the motion reaches."""
-    ticks = tuple((share * largest_mm2, number(share * largest_mm2, ".3g")) for share in (0.0, 0.5, 1.0))
-    return ColourScale(tr(OPENING_TITLE), 0.0, largest_mm2, palette.sequential, ticks)
+    square = ShownUnit.mm() ** 2
+    ticks = tuple((share * largest_mm2, number(share * largest_mm2 / square, ".3g")) for share in (0.0, 0.5, 1.0))
+    return ColourScale(ShownUnit.words(tr(OPENING_TITLE)), 0.0, largest_mm2, palette.sequential, ticks)
 
 
 def bar_boxes(titles: Sequence[str], metrics: QFontMetrics, right: float, top: float) -> list[QRectF]:

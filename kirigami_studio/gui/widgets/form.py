@@ -13,7 +13,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.card import compact
 from kirigami_studio.gui.widgets.choice_box import ChoiceBox, Choices
 from kirigami_studio.gui.widgets.layouts import column, label
-from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField, number_field
+from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField, names_length, number_field
 
 #: A field of a form.
 Field = QSpinBox | DecimalField | ChoiceBox | QCheckBox
@@ -100,6 +100,8 @@ class Form(QObject):
         """A field that was made below the caption of its setting, alone or within ``content``."""
         caption = "" if isinstance(self.fields[name], QCheckBox) else tr(self.settings[name].setting.label)
         words, field = label(caption, self.fields[name]), self.fields[name]
+        if isinstance(field, LengthField):
+            names_length(words)
         self._captions[name] = words
         return column(words, field if content is None else content, spacing=3)
 
@@ -154,4 +156,6 @@ class Form(QObject):
         field.setAccessibleName(spoken(one))
         if setting.about:
             field.setToolTip(tr(setting.about, **one.numbers))
+        if isinstance(field, LengthField):
+            names_length(field)
         self.fields[one.name], self._show[one.name] = field, show

@@ -11,6 +11,8 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QLayout, QPushBut
 Part = QWidget | QLayout | tuple[QWidget | QLayout, int] | int | EllipsisType
 #: Left, top, right, bottom, pixels.
 Margins = tuple[int, int, int, int]
+#: Least edge (pixels) of what a finger presses; the style sheet keeps it for buttons, boxes and fields.
+TOUCH = 32
 NO_MARGINS: Margins = (0, 0, 0, 0)
 
 

@@ -11,9 +11,9 @@ import numpy as np
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPen
 
-from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.fitted_text import elided
 from kirigami_studio.gui.widgets.paths import ink
+from kirigami_studio.gui.widgets.readable import ShownUnit, readable_mm
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 
@@ -145,7 +145,7 @@ def paint_scale_bar(painter: QPainter, scale: float, right_end: QPointF, palette
     scale : float, pixels per mm
     right_end : QPointF, pixels
     """
-    length = round_length(LONGEST / scale)
+    length = ShownUnit.mm() * round_length(LONGEST / scale / ShownUnit.mm())
     x, y, left = right_end.x(), right_end.y(), right_end.x() - length * scale
     painter.setPen(QPen(QColor(palette.text), 1.6))
     painter.drawLines([QLineF(left, y, x, y), QLineF(left, y - ENDS, left, y), QLineF(x, y - ENDS, x, y)])
@@ -158,8 +158,3 @@ def round_length(longest: float) -> float:
     """The largest of 1, 2, 5 times a power of ten that is no longer; ``longest`` > 0."""
     power = 10.0 ** math.floor(math.log10(longest))
     return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest * (1.0 + 1e-9))
-
-
-def readable_mm(length: float) -> str:
-    """A length without needless digits."""
-    return tr("{length:g} mm", length=length)

@@ -17,7 +17,7 @@ from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.legends import Chip
 from kirigami_studio.gui.widgets.paths import area_path, painter_on
-from kirigami_studio.gui.widgets.readable import readable_area
+from kirigami_studio.gui.widgets.readable import readable_area, readable_width
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.outlines.outline import Outline
@@ -130,7 +130,7 @@ def _chips(
     areas: tuple[float, float], mm2: float, off_mm: tuple[float, float], palette: Palette, short: bool
 ) -> list[Chip]:
     missing, extra = (readable_area(mm2 * share) for share in areas)
-    off = tr("off by {mean:.2f} mm (max {most:.2f} mm)", mean=off_mm[0], most=off_mm[1])
+    off = tr("off by {mean} (max {most})", mean=readable_width(off_mm[0]), most=readable_width(off_mm[1]))
     if short:
         texts = tr("missing {area}", area=missing), tr("extra {area}", area=extra)
     else:

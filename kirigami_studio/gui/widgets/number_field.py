@@ -8,10 +8,10 @@ from typing import TypeVar
 
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QKeyEvent, QValidator
-from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QSlider, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QLabel, QSlider, QWidget
 
 from kirigami_studio.foundation.units import MM_PER_INCH
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.widgets.readable import ShownUnit
 
 #: Keys that, with Ctrl, mean something to the window: undo, redo and export.  A field keeps undo while it is typed in.
 WINDOW_KEYS = (Qt.Key.Key_Z, Qt.Key.Key_Y, Qt.Key.Key_E)
@@ -27,6 +27,8 @@ LENGTH_UNITS: Mapping[str, float] = {
     '"': MM_PER_INCH,
     "thou": MM_PER_INCH / 1000,
 }
+#: Properties of a widget with its caption, and its spoken name, as they are for mm.
+CAPTION, SPOKEN = "captionInMm", "spokenInMm"
 #: Names of sliders that move a drawing.
 DRAWING_SLIDERS = frozenset({"phiSlider", "cutStep"})
 #: A number, a fraction of two, and what stands behind them.
@@ -149,9 +151,14 @@ class LengthField(DecimalField):
 
     units = LENGTH_UNITS
 
+    @property
+    def assumed(self) -> str:  # type: ignore[override]
+        """Unit of lengths that are typed without one: the shown one."""
+        return "in" if ShownUnit.inches else ""
+
     def setSuffix(self, suffix: str) -> None:  # noqa: N802 - Qt's name
         """Set the unit that stands behind the number, if one does: that of all lengths."""
-        super().setSuffix(suffix and (tr(" in") if self.assumed else tr(" mm")))
+        super().setSuffix(suffix and f" {ShownUnit.name()}")
 
     def textFromValue(self, value: float) -> str:  # noqa: N802 - Qt's name
         """Write a length in the unit of all lengths (Qt's own call)."""
@@ -162,11 +169,26 @@ class LengthField(DecimalField):
 
 
 def show_lengths(root: QWidget, inches: bool) -> None:
-    """Show and read inches, or mm again, in all fields for lengths below a widget."""
-    LengthField.assumed = "in" if inches else ""
+    """Show and read inches, or mm again, in all fields for lengths below a widget and in what names them."""
+    ShownUnit.inches = inches
     for field in root.findChildren(LengthField):
         field.setSuffix(field.suffix())
         field.setDecimals(field.decimals())  # or the text would stay
+    for part in root.findChildren(QWidget):
+        if (caption := part.property(CAPTION)) is not None and isinstance(part, QLabel):
+            part.setText(ShownUnit.words(caption))
+        if (spoken := part.property(SPOKEN)) is not None:
+            part.setAccessibleName(ShownUnit.words(spoken))
+
+
+def names_length(part: QWidget) -> None:
+    """Let a label, or the spoken name of a field, that tells of mm follow the shown unit from now on."""
+    if isinstance(part, QLabel):
+        part.setProperty(CAPTION, part.text())
+        part.setText(ShownUnit.words(part.text()))
+    elif part.accessibleName():
+        part.setProperty(SPOKEN, part.accessibleName())
+        part.setAccessibleName(ShownUnit.words(part.accessibleName()))
 
 
 Field = TypeVar("Field", bound=DecimalField)
@@ -200,5 +222,7 @@ def decimal_field(
     field.setToolTip(tip)
     if width is not None:
         field.setFixedWidth(width)
+    if isinstance(field, LengthField):
+        names_length(field)
     number_field(field)
     return field

@@ -10,9 +10,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray, ShapeRings
-from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.mismatch_items import stripes
 from kirigami_studio.gui.widgets.paths import ink, line_path, rings_path, round_pen
+from kirigami_studio.gui.widgets.readable import readable_box
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.outlines.mirroring import Axis, Mirror
@@ -117,7 +117,7 @@ def paint_size(painter: QPainter, pointer: QPointF, size: tuple[float, float], p
     paint_label(
         painter,
         pointer,
-        tr("{width:.4g} \N{MULTIPLICATION SIGN} {height:.4g} mm", width=size[0], height=size[1]),
+        readable_box(*size),
         palette,
     )
 

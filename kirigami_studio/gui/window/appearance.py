@@ -16,6 +16,7 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.number_field import show_lengths
+from kirigami_studio.gui.widgets.readable import ShownUnit
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.project.preferences import LengthUnit, Theme
 
@@ -32,6 +33,7 @@ class Appearance(QObject):
     """
 
     changed = Signal(object)  #: the Palette, or whether it follows the desktop's
+    unit_changed = Signal()  #: that lengths are shown in
 
     def __init__(
         self,
@@ -92,7 +94,7 @@ class Appearance(QObject):
 
     def refresh(self) -> None:
         """Show the theme and the unit that the preferences ask for."""
-        show_lengths(self._window, self.in_inches)
+        self._show_unit()
         palette = theme.PALETTES.get(self._preferences.present.theme) or theme.system_palette()
         if palette is not self.palette:
             self.set_theme(palette)
@@ -108,7 +110,12 @@ class Appearance(QObject):
         """Show lengths in inches, or in mm again."""
         unit = LengthUnit.MILLIMETRES if self.in_inches else LengthUnit.INCHES
         self._preferences.keep(replace(self._preferences.present, unit=unit))
-        show_lengths(self._window, self.in_inches)
+        self._show_unit()
+
+    def _show_unit(self) -> None:
+        if ShownUnit.inches != self.in_inches:
+            show_lengths(self._window, self.in_inches)
+            self.unit_changed.emit()
 
     def switch(self) -> None:
         """Change between light and dark; the choice stays until the desktop is to be followed again."""

@@ -97,7 +97,7 @@ def _on_tool(panel: TargetPanel, post: Callable[[Message], None], tool: Tool) ->
 
 def _set_mode(panel: TargetPanel, mode: Combine) -> None:
     if panel.tools.modes[mode].isEnabled():
-        panel.tools.set_mode(mode)
+        panel.tools.take_mode(mode)
 
 
 def _cycle_axis(panel: TargetPanel) -> None:

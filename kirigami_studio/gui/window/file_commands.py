@@ -157,6 +157,7 @@ def commands(
     show_library: Callable[[], None],
     show_pairs: Callable[[], None],
     export_artwork: Callable[[], None],
+    show_print: Callable[[], None],
     close: Callable[[], object],
 ) -> tuple[Command, ...]:
     """Return the commands of the File menu."""
@@ -205,6 +206,14 @@ def commands(
             tr("Share as a pa&ge …"),
             tr("One file that moves in every browser, with the project inside"),
             partial(files.export, ".html"),
+        ),
+        sheet(
+            "print",
+            tr("Print …"),
+            tr("Print the cut sheet at true size, or see its pages"),
+            show_print,
+            "Ctrl+P",
+            "print",
         ),
         command("animation", tr("Export an&imation …"), moving, files.animate),
         command("animation_ideal", tr("Expor&t ideal animation …"), ideal, partial(files.animate, Motion.IDEAL)),

@@ -14,6 +14,7 @@ from kirigami_studio.gui.session.command import Command, Switch, WindowState
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.widgets.actions import CommandActions
+from kirigami_studio.gui.widgets.canvas import name_roles
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import BriefTooltips
@@ -76,6 +77,7 @@ class MainWindow(QMainWindow):
         self.setCentralWidget(pages)
         self._build_status()
         leave_wheel(self)
+        name_roles()
         BriefTooltips(self)
         for box in self.findChildren(QAbstractSpinBox):
             box.installEventFilter(self)
@@ -113,6 +115,7 @@ class MainWindow(QMainWindow):
         self._refresh_commands()
         self._build_toolbar()
         self.messages.content_changed.connect(self._place_messages)
+        self.appearance.unit_changed.connect(self._show_unit)
         self.welcome.offer(self.commands.actions)
         self.appearance.changed.connect(self.commands.set_palette)
         self.appearance.set_theme(palette)
@@ -160,6 +163,7 @@ class MainWindow(QMainWindow):
                 show_library=dialogs.show_library,
                 show_pairs=presenters.show_pairs,
                 export_artwork=dialogs.export_artwork,
+                show_print=dialogs.show_print,
                 close=self.close,
             ),
             *edit_commands.commands(project, targeting, dialogs, self.pasting, self.picturing),
@@ -260,6 +264,12 @@ class MainWindow(QMainWindow):
             event.ignore()
             return True
         return super().eventFilter(watched, event)
+
+    def _show_unit(self) -> None:
+        """Write all lengths in the unit that was switched to."""
+        self.presenters.show_unit()
+        for part in self.findChildren(QWidget):
+            part.update()
 
     def _place_messages(self) -> None:
         """Messages lie where the project's name is, between the buttons of the tool bar."""

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QWidget
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.command import Command
+from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.window.appearance import Appearance
 from kirigami_studio.gui.window.file_commands import FileCommands
@@ -23,6 +24,7 @@ from kirigami_studio.studio.making import ExportedFiles
 if TYPE_CHECKING:
     from kirigami_studio.gui.gallery.label_editor import LabelEditor
     from kirigami_studio.gui.make.export_report import ExportReport
+    from kirigami_studio.gui.make.print_dialog import PrintDialog
     from kirigami_studio.gui.make.shelf_editors import MaterialEditor
     from kirigami_studio.gui.stage.artwork_editor import ArtworkEditor
     from kirigami_studio.gui.target.outline_board import OutlineBoard, StartBoard
@@ -67,6 +69,7 @@ class Dialogs(QObject):
         self.guide: GuideWindow | None = None
         self.picker: SilhouettePicker | None = None
         self.report: ExportReport | None = None
+        self.printing: PrintDialog | None = None
         self.materials: MaterialEditor | None = None
         self.history: HistoryList | None = None
         self.shortcuts: ShortcutSheet | None = None
@@ -99,8 +102,35 @@ class Dialogs(QObject):
             return
         self.report = ExportReport(self._window, exported.verifications, self._appearance.palette, exported.verdict)
         self.report.folder_wanted.connect(show_in_folder)
-        self.report.open_wanted.connect(open_in_program)
+        self.report.open_wanted.connect(self.open_in_program)
         self.report.show()
+
+    def open_in_program(self, path: Path) -> None:
+        """Let the desktop open a written file in its program, such as LightBurn for its projects."""
+        if not QDesktopServices.openUrl(QUrl.fromLocalFile(str(path))):
+            sentence = tr(
+                "No program is set up for {kind} files. Open {name} in the program of your machine.",
+                **kind_and_name(path),
+            )
+            self._services.session.post(Message(sentence, Tone.WARNING, str(path)))
+
+    def show_print(self) -> None:
+        """Show the cut sheet on paper, as it is printed, or bring that to the front."""
+        from kirigami_studio.gui.make.print_dialog import PrintDialog
+
+        planner = self._services.cutting
+        if self.printing is None:
+            self.printing = PrintDialog(self._window, self._services.session.queue)
+            self.printing.changed.connect(lambda changes: self._services.fabrication.change(**changes))
+            self.printing.pdf_wanted.connect(lambda: self._files.export(".pdf"))
+            planner.planned.connect(self._update_print)
+            planner.refused.connect(lambda _: self._update_print())
+        bring_to_front(self.printing)
+        self._update_print()
+
+    def _update_print(self) -> None:
+        if self.printing is not None and self.printing.isVisible():
+            self.printing.show_plan(self._services.cutting.made, self._services.session.document.fabrication)
 
     def close_report(self) -> None:
         """Close the report, if there is one."""
@@ -170,6 +200,7 @@ class Dialogs(QObject):
             session = self._services.session
             self.parts = PartPicker(self._window, self._services.session.queue)
             self.parts.taken.connect(lambda outline, usual: self._on_parts(outline, usual))
+            self.parts.pieces_taken.connect(self._services.targeting.reader.take_pieces)
             self.parts.rejected.connect(lambda: session.set_status(tr("No part was taken; nothing changed.")))
         self._on_parts = take
         self.parts.begin(read, purpose)
@@ -259,7 +290,7 @@ class Dialogs(QObject):
         self.close_report()
         asking = (self.start_board, self.second_board, self.parts)
         read = (self.guide, self.history, self.shortcuts, self.about)
-        for dialog in (self.materials, *read, *asking, self.artwork):
+        for dialog in (self.materials, self.printing, *read, *asking, self.artwork):
             if dialog is not None:
                 dialog.close()
 
@@ -272,9 +303,9 @@ def bring_to_front(dialog: QWidget) -> None:
     dialog.activateWindow()
 
 
-def open_in_program(path: Path) -> None:
-    """Let the desktop open a written file in its program, such as LightBurn for its projects."""
-    QDesktopServices.openUrl(QUrl.fromLocalFile(str(path)))
+def kind_and_name(path: Path) -> dict[str, str]:
+    """The kind of a file, as in its name, and the name."""
+    return {"kind": path.suffix, "name": path.name}
 
 
 def show_in_folder(path: Path) -> None:

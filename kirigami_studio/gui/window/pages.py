@@ -13,6 +13,7 @@ from kirigami_studio.gui.make.cut_view import CutView
 from kirigami_studio.gui.make.cuts_page import CutBar, CutsPage
 from kirigami_studio.gui.make.fabrication_panel import FabricationPanel
 from kirigami_studio.gui.run.generate_bar import GenerateBar
+from kirigami_studio.gui.run.part_bar import PartBar
 from kirigami_studio.gui.run.settings_panel import SettingsPanel
 from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
 from kirigami_studio.gui.target.target_panel import TargetPanel
@@ -84,7 +85,8 @@ class Pages(QWidget):
         self.stage.comparing_changed.connect(self._follow_comparison)
         self.stack = QStackedWidget()  #: the columns, and what is shown in their place
         self.stack.addWidget(self.splitter)
-        column((self.stack, 1), on=self, margins=(10, 0, 10, 2))
+        self.parts = PartBar()
+        column(self.parts, (self.stack, 1), on=self, margins=(10, 0, 10, 2))
         self._show()
 
     def turn(self, page: WindowPage) -> None:

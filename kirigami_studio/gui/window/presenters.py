@@ -15,6 +15,7 @@ from kirigami_studio.gui.gallery.comparing import Comparison
 from kirigami_studio.gui.gallery.gallery_presenter import GalleryPresenter
 from kirigami_studio.gui.make.fabrication_presenter import FabricationPresenter
 from kirigami_studio.gui.run.generate_bar import RunPresenter
+from kirigami_studio.gui.run.part_bar import PartPresenter
 from kirigami_studio.gui.run.start_tile import DRAWN_START, FILE_START, LIBRARY_START, PAIRS
 from kirigami_studio.gui.session.session import Entry
 from kirigami_studio.gui.stage.void_bar import VoidPresenter
@@ -140,6 +141,7 @@ class Presenters(QObject):
             showing_before=lambda: stage.showing_before,
             command=command,
         )
+        self.parts = PartPresenter(pages.parts, session, services.generation, services.hand)
         self.welcome = WelcomePresenter(pages.welcome, session, services.preferences)
         self._connect_session()
         self._connect_stage()
@@ -224,9 +226,11 @@ class Presenters(QObject):
         panel.materials_wanted.connect(dialogs.show_materials)
         panel.export_wanted.connect(files.export)
         panel.exports.all_wanted.connect(files.export_all)
+        panel.exports.print_wanted.connect(dialogs.show_print)
         panel.exports.artwork_wanted.connect(dialogs.export_artwork)
         panel.exports.ideal_wanted.connect(lambda: files.animate(Motion.IDEAL))
         services.exporter.exported.connect(dialogs.show_report)
+        services.exporter.open_wanted.connect(dialogs.open_in_program)
         services.project.recovery.recover_wanted.connect(files.recover)
         for changed in (services.project.stock.added, dialogs.materials_changed):
             changed.connect(self.making.reload_materials)
@@ -253,6 +257,7 @@ class Presenters(QObject):
         self.stage.show_run()
         self.making.show_run()
         self.run.show_run(total)
+        self.parts.show_document(self._services.session.document)
         self.voids.refresh()
 
     def _show_idle(self) -> None:
@@ -261,6 +266,7 @@ class Presenters(QObject):
         self.all_designs.show_run()
         self.stage.show_idle()
         self.run.show_idle()
+        self.parts.show_document(self._services.session.document)
         self.voids.refresh()
 
     def _show_document(self, document: Document) -> None:
@@ -272,6 +278,7 @@ class Presenters(QObject):
         self.stage.show_document()
         self.making.show_document(document)
         self.run.show_document(document)
+        self.parts.show_document(document)
         self.start.show()
         self.voids.refresh()
         self._pages.target.opened.show_size(size_of(document), follows=document.fabrication.opened_mm is not None)
@@ -323,6 +330,11 @@ class Presenters(QObject):
             return
         pages.turn(WindowPage.DESIGN)
         pages.stage.player.play.setChecked(False)
+
+    def show_unit(self) -> None:
+        """Lengths are shown in another unit: write them all again."""
+        self._show_document(self._services.session.document)
+        self.making.show_unit()
 
     def refit(self, on: bool) -> None:
         """Fit the chosen design again, or stop fitting."""

@@ -83,6 +83,7 @@ class Services(QObject):
         self.cutting.answered.connect(self.as_cut.read)
         self.cutting.answered.connect(self.verdict.take_plan)
         self.cutting.answered.connect(self.pieces.take)
+        self.cutting.answered.connect(self.artwork.take)
         self.cutting.refused.connect(self.as_cut.forget)
         self.cutting.not_planned.connect(self.verdict.take_refusal)
         self.verdict.judged.connect(self.estimates.take_verdict)

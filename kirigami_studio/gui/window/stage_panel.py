@@ -27,6 +27,7 @@ from kirigami_studio.gui.stage.void_bar import VoidBar
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
 from kirigami_studio.gui.widgets.layouts import column, plain_pane
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.studio.designing import limit_of
 from kirigami_studio.studio.making import MadePieces, Planned
 from kirigami_studio.studio.two_states import TwoStates, match_of_start, start_of
 
@@ -71,6 +72,7 @@ class StagePanel(Card):
         self._sample: Entry | None = None
         self._target: Outline | None = None
         self._name = ""
+        self._limit = ""
         self._width_mm = USUAL_WIDTH_MM
         self._trimmable, self._trimming = True, False
         self._as_cut = UNKNOWN
@@ -345,13 +347,20 @@ class StagePanel(Card):
         self.view.show_tiles(made.layers if isinstance(made, Planned) else None)
         self.show_title()
 
+    def show_limit(self, text: str) -> None:
+        """Say beside the match what no closed sheet shows of the target; "" for nothing."""
+        if text != self._limit:
+            self._limit = text
+            self.show_title()
+
     def show_title(self) -> None:
         """Show what the header says of the design."""
         entry, name = self._entry, self._name
         alone = tr("Layout") if entry is None or not name else tr("Design {name}", name=name)
         self.title.setText(tr("Comparison") if self.comparing else alone)
         self.numbers.set_texts(*self._texts())
-        self.numbers.setToolTip("" if entry is None else described(entry.candidate, name))
+        limit = [self._limit] if self._limit else []
+        self.numbers.setToolTip("" if entry is None else "\n".join([described(entry.candidate, name), *limit]))
         self._fit_numbers()
 
     def _texts(self) -> tuple[str, ...]:
@@ -518,6 +527,8 @@ class StagePresenter(QObject):
         """The document has changed."""
         self._show_width()
         self._show_hint()
+        limit = limit_of(self._session.document)
+        self._panel.show_limit("" if limit is None else limit.text)
 
     def show_design(self, entry: Entry | None) -> None:
         """Another design is chosen, or none."""

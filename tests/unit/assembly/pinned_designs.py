@@ -8,12 +8,16 @@ import numpy as np
 import shapely
 
 from kirigami_studio.assembly.pieces import Assembly
+from kirigami_studio.assembly.pinned import PinnedPlan
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.mechanics.gripping import SoftMotions
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.settings.fabrication import new_settings
+from kirigami_studio.studio.as_cut import motions_on_pins
 
 
 def pinwheel(
@@ -25,6 +29,13 @@ def pinwheel(
     field = RatioField.from_log10(size * (-1.0) ** (row + column))
     deployment, target = deploy(field), Outline.from_points([(0, 0), (1, 0), (1, 1), (0, 1)], "square")
     return PosedDesign(deployment, align(deployment.outline(phi), target.points), phi), target
+
+
+def softest(plan: PinnedPlan) -> SoftMotions:
+    """The softest motions of a sheet of plywood, as the program has them."""
+    assembly = plan.assembly
+    width = float(np.ptp(assembly.deployment.compact[:, 0])) * assembly.cell_mm
+    return motions_on_pins(assembly.deployment, new_settings({"material": "plywood-co2", "width_mm": width}))
 
 
 def bodies_at(assembly: Assembly, phi: float) -> list[tuple[int, shapely.Polygon]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -14,7 +15,7 @@ from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
 from kirigami_studio.fabricate.drive import LONGEST_MM, SHORTEST_MM, WALL_MM, DriveKind
-from tests.unit.assembly.pinned_designs import pinwheel
+from tests.unit.assembly.pinned_designs import pinwheel, softest
 
 MOVING = (DriveKind.CRANK, DriveKind.SERVO)
 #: Rows, columns, width and target angle of sheets with boards.
@@ -29,7 +30,7 @@ def plan_of(rows: int, columns: int, width_mm: float, phi: float) -> PinnedPlan:
 def moved(request: pytest.FixtureRequest) -> tuple[PinnedPlan, DriveParts]:
     kind, sheet = request.param
     plan = plan_of(*sheet)
-    found, problems = driven(plan, kind)
+    found, problems = driven(plan, kind, partial(softest, plan))
     assert found is not None and problems == ()
     return plan, found
 
@@ -124,10 +125,29 @@ def test_that_cuts_of_the_board_keep_walls_and_spacers_lie_on_pins_of_one_piece(
 
 def test_that_sheets_without_screws_or_room_have_no_board_and_say_so() -> None:
     plan = plan_of(*SHEETS[0])
-    assert driven(plan, DriveKind.NONE) == (None, ())
+    assert driven(plan, DriveKind.NONE, partial(softest, plan)) == (None, ())
     brads = pinned(*pinwheel(3, 3), 140.0, PinOptions(pin_mm=1.6, ear_mm=6.0))
-    found, problems = driven(brads, DriveKind.SERVO)
+    found, problems = driven(brads, DriveKind.SERVO, partial(softest, brads))
     assert found is None and [problem.code for problem in problems] == ["drive.needs_screws"]
     small = pinned(*pinwheel(2, 2), 60.0, PinOptions(pin_mm=2.2, ear_mm=5.0, neck_mm=1.0, head_mm=5.0))
-    found, problems = driven(small, DriveKind.CRANK)
+    found, problems = driven(small, DriveKind.CRANK, partial(softest, small))
     assert found is None and [problem.code for problem in problems] == ["drive.no_room"]
+
+
+def test_that_the_pieces_that_are_fixed_and_led_leave_least_of_the_softest_motions() -> None:
+    plan = plan_of(6, 6, 240.0, 0.0)
+    motions, columns = softest(plan), 7
+    drive, _ = driven(plan, DriveKind.CRANK, lambda: motions)
+    assert drive is not None
+    panel = {piece.id: piece.panel[0] * columns + piece.panel[1] for piece in plan.assembly.pieces if piece.layer == 2}
+    even = plan.assembly.deployment.even_part[plan.assembly.deployment.topology.panel_nodes].mean(axis=2)
+    even = even.reshape(-1, 2) * plan.assembly.cell_mm
+    taken = [
+        motions.taken([panel[one], panel[other]])
+        for one, other in combinations(panel, 2)
+        if SHORTEST_MM <= math.dist(even[panel[one]], even[panel[other]]) <= LONGEST_MM
+    ]
+    own = motions.taken([panel[drive.fixed], panel[drive.arms[0].piece]])
+    better = sum(one > own + 1e-9 for one in taken)
+    assert better <= 0.02 * len(taken), "few pairs are better, which leave no room for arms"
+    assert len(drive.arms) == 2 and motions.taken([panel[drive.fixed], *(panel[arm.piece] for arm in drive.arms)]) > own

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 
-from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.evaluate.posed_design import PosedDesign, covered
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -70,3 +71,13 @@ def test_that_places_go_to_the_world_and_back() -> None:
         assert design.to_world(nodes, phi) == pytest.approx(design.nodes(phi))
         x, y = design.nodes(phi)[7]
         assert design.to_layout((float(x), float(y)), phi) == pytest.approx(nodes[7])
+
+
+def test_that_a_void_which_folds_over_itself_beside_a_cut_is_measured() -> None:
+    sheet = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+    removed = [np.array([[3.0, 3.0], [4.0, 3.0], [4.0, 4.0], [3.0, 4.0]])]
+    target = shapely.box(0.0, 0.0, 3.0, 4.0)
+    folded = [[2.5, 3.0], [3.5, 2.9], [2.5, 2.9], [3.5, 3.0]]
+    beside = [[3.2, 2.5], [3.8, 2.5], [3.8, 3.0], [3.2, 3.0]]
+    area = covered(sheet, target, removed, np.array([folded, beside])).area
+    assert area == pytest.approx(16.0 - 1.0 - 0.3)

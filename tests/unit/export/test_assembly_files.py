@@ -8,6 +8,7 @@ import math
 import shutil
 from collections import Counter
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +47,7 @@ from kirigami_studio.fabricate.machine import machine_of
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation import words
 from kirigami_studio.foundation.errors import ExportError
-from tests.unit.assembly.pinned_designs import pinwheel
+from tests.unit.assembly.pinned_designs import pinwheel, softest
 
 PLYWOOD = find_material("plywood-co2")
 SMALL_BED = replace(machine_of(PLYWOOD), bed_width_mm=120.0, bed_height_mm=70.0)
@@ -351,7 +352,7 @@ def ezdxf_numbers(folder: Path, assembly: Assembly) -> int:
 @pytest.mark.parametrize("kind", [DriveKind.CRANK, DriveKind.SERVO])
 def test_that_board_and_arms_are_files_pieces_and_parts_of_the_folder(kind: DriveKind, tmp_path: Path) -> None:
     plan = pinned(*pinwheel(3, 3), 160.0)
-    drive, _ = driven(plan, kind)
+    drive, _ = driven(plan, kind, partial(softest, plan))
     assert drive is not None
     job = job_of(plan.assembly, drive=drive, paper=Paper.A4)
     files = write_assembly(job, tmp_path / "moved")

@@ -139,3 +139,15 @@ def test_that_a_piece_beyond_the_bed_lies_alone(pieces: tuple[Piece, ...]) -> No
 
 def test_that_the_same_pieces_are_laid_once(pieces: tuple[Piece, ...]) -> None:
     assert laid_on_beds(pieces, KERF_MM, BED) is laid_on_beds(tuple(pieces), KERF_MM, BED)
+
+
+def test_that_corners_that_the_beam_goes_round_have_few_points() -> None:
+    """A step of 4 µm in the rim, as pieces that were extended have, takes sharp corners from the whole cut."""
+    turn = 2.0 * np.pi * np.arange(90) / 90
+    disc = np.column_stack([np.cos(turn), np.sin(turn)])
+    outline = np.vstack([9.0 * disc[:46], 9.004 * disc[45:], 9.004 * disc[:1]])
+    (bed,) = laid_on_beds([Piece("A1", 1, (0, 0), outline)], KERF_MM, BED)
+    (cuts,) = bed.pieces
+    beam = Polygon(outline).buffer(0.5 * KERF_MM, quad_segs=64)
+    assert Polygon(cuts.outline).hausdorff_distance(beam) < 6e-4
+    assert len(cuts.outline) <= 1.5 * len(outline)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
+from piece_reader import put_together
 from random_assemblies import faults, random_job
 
 
@@ -22,6 +24,18 @@ def test_that_the_other_reader_finds_faults(tmp_path: Path) -> None:
     start = text.rindex("M ", 0, at) + 2
     x = text[start : text.index(",", start)]
     path.write_text(text[:start] + f"{float(x) + 0.01:.4f}" + text[start + len(x) :])
-    from piece_reader import put_together
-
     assert put_together(tmp_path / "out", ".svg", random_job(0, 2).allowed_mm).holes_mm > 1e-3
+
+
+def test_that_the_other_reader_finds_pieces_that_collide(tmp_path: Path) -> None:
+    """A piece that goes astray at one angle, over others of its layer."""
+    job = random_job(0, 3)
+    assert faults(0, tmp_path / "out", most=3) == []
+    motion = tmp_path / "out" / "pieces.json"
+    record = json.loads(motion.read_text())
+    astray, *others = (piece.id for piece in job.assembly.pieces if piece.layer == 1)
+    poses = record["motion"][90]["poses"]
+    poses[astray] = poses[others[-1]]
+    motion.write_text(json.dumps(record))
+    read = put_together(tmp_path / "out", ".dxf", job.allowed_mm)
+    assert read.overlap_mm2 > 10.0 and read.pins_mm > 1.0

@@ -16,7 +16,7 @@ from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.profile import PROFILES, find_profile
 from kirigami_studio.export.provenance import write_sidecar
 from kirigami_studio.export.registry import export
-from kirigami_studio.export.strokes import Stroke, strokes_of, work_of
+from kirigami_studio.export.strokes import Stroke, extent, strokes_of, total_length, work_of
 from kirigami_studio.export.verification import verify_export
 from kirigami_studio.fabricate.cut_path import CutPath, Layer
 from kirigami_studio.fabricate.cut_plan import plan_cuts
@@ -77,3 +77,18 @@ def test_that_open_cuts_take_what_the_plan_says(profile: str, make_design: MakeD
     twice = replace(plan, material=replace(plan.material, passes=2 * plan.material.passes))
     double = work_of(strokes_of(plan, find_profile(profile)), twice)
     assert double.times.cut == pytest.approx(2.0 * work.times.cut)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_that_strokes_together_are_as_long_and_reach_as_far_as_one_by_one(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    strokes = [Stroke.round(random.uniform(0.0, 50.0, 2), random.uniform(1.0, 40.0), "HOLES", 1) for _ in range(5)]
+    for count in (2, 3, 7):
+        points = random.uniform(0.0, 60.0, (count, 2))
+        strokes.append(Stroke(points, count > 2, "OUTLINE", 3))
+        strokes.append(Stroke(points, True, "SLITS", 2, random.uniform(-1.5, 1.5, count)))
+    strokes = [strokes[at] for at in random.permutation(len(strokes))]
+    assert total_length(strokes) == pytest.approx(sum(stroke.length for stroke in strokes), rel=1e-12)
+    farthest = np.max([stroke.travelled().max(axis=0) for stroke in strokes], axis=0)
+    assert extent(strokes) == pytest.approx(farthest.tolist(), abs=1e-12)
+    assert total_length([]) == 0.0

@@ -408,3 +408,50 @@ def test_that_a_picture_of_nothing_is_refused(tmp_path) -> None:
     Image.new("RGB", (50, 50), "white").save(path)
     with pytest.raises(TargetError, match="blank"):
         read_parts(path)
+
+
+# every piece by itself -----------------------------------------------------------------------------------------------
+
+
+def test_that_each_piece_is_an_outline_of_its_own_with_its_name_size_and_place(logo) -> None:
+    found = merged(logo, logo.of([1, 2]), Merging(Join.EACH))
+    assert [one.outline.name for one in found.all] == ["disc", "ring"]
+    assert [one.outline.size for one in found.all] == [pytest.approx((40, 40), rel=1e-3)] * 2
+    assert [len(one.outline.holes) for one in found.all] == [0, 1]
+    (x, y), (other_x, other_y) = (one.place for one in found.all)
+    assert (other_x - x, other_y - y) == pytest.approx((50, 0), abs=0.01)
+
+
+def test_that_pieces_of_one_name_are_told_apart(svg) -> None:
+    body = '<rect id="dot" x="10" width="8" height="8"/><g id="dot"><rect id="dot" x="30" width="8" height="8"/></g>'
+    source = read_parts(svg(body, MM))
+    found = merged(source, source.parts, Merging(Join.EACH))
+    assert [one.outline.name for one in found.all] == ["dot", "dot 2"]
+
+
+def test_that_a_piece_in_the_hole_of_another_one_is_a_sheet_too(svg) -> None:
+    body = '<path id="eye" fill-rule="evenodd" d="M0 0h60v60h-60z M10 10h40v40h-40z M20 20h20v20h-20z"/>'
+    source = read_parts(svg(body, MM))
+    found = merged(source, source.parts, Merging(Join.EACH))
+    assert sorted(one.outline.size[0] for one in found.all) == pytest.approx([20, 60])
+    assert [len(one.outline.holes) for one in found.all] == [1, 0]
+
+
+def test_that_painted_strokes_are_pieces(svg) -> None:
+    body = '<g fill="none" stroke="#000" stroke-width="6"><path id="a" d="M10 10h80"/><path id="b" d="M10 40h70"/></g>'
+    source = read_parts(svg(body, MM))
+    found = merged(source, source.parts, Merging(Join.EACH, as_painted=True))
+    assert [one.outline.name for one in found.all] == ["a", "b"]
+
+
+def test_that_touching_parts_are_one_piece(svg) -> None:
+    source = read_parts(svg('<rect id="a" width="20" height="20"/><rect id="b" x="20" width="9" height="20"/>', MM))
+    found = merged(source, source.parts, Merging(Join.EACH))
+    assert not found.others and found.outline.size == pytest.approx((29, 20))
+
+
+def test_that_more_pieces_than_anybody_cuts_are_refused(svg) -> None:
+    body = "".join(f'<rect x="{4 * k}" width="2" height="2"/>' for k in range(25))
+    source = read_parts(svg(body, MM))
+    with refused(TargetError, "parts.too_many_sheets"):
+        merged(source, source.parts, Merging(Join.EACH))

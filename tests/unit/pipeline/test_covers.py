@@ -13,7 +13,7 @@ from kirigami_studio.evaluate.candidate import Candidate, Family, Origin
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.outlines.starts import no_closed_sheet_shows
+from kirigami_studio.outlines.starts import no_closed_sheet_shows, start_shape
 from kirigami_studio.outlines.turning import sides_needed
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.fit_again import fit_again
@@ -21,7 +21,11 @@ from kirigami_studio.pipeline.redesign import refitted
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, needs_cover
 from kirigami_studio.pipeline.variety import look_alikes
-from kirigami_studio.studio.designing import first_of_families, why_covered
+from kirigami_studio.project.document import Document
+from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.studio.cutting import span_mm
+from kirigami_studio.studio.designing import closed_limit, first_of_families, limit_of, why_covered
+from kirigami_studio.studio.verdict import look_at
 
 
 @pytest.fixture(scope="module")
@@ -31,9 +35,14 @@ def keyhole() -> Outline:
     return Outline.from_points(points, "keyhole")
 
 
+#: What the sheets are cut from, mm wide.
+CUT = FabricationSettings(width_mm=90.0)
+
+
 @pytest.fixture(scope="module")
 def run(keyhole: Outline) -> Result:
-    return best_of(Request(keyhole, (8, 8), k=4, polish=3))
+    sizes = {"width_mm": CUT.width_mm, "span_mm": span_mm(CUT)}
+    return best_of(Request(keyhole, (8, 8), k=4, polish=3, **sizes))
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +64,12 @@ def test_that_a_shape_that_turns_back_far_has_two_families_in_one_run(run: Resul
 
 def test_that_a_cover_is_scored_as_the_sheet_that_is_cut(cover: Candidate) -> None:
     assert cover.trim is not None and cover.sheet == cover.trim.sheet == cover.final_sheet
+
+
+def test_that_covers_leave_their_connectors_room_and_match_no_less_for_it(run: Result, keyhole: Outline) -> None:
+    covers = [one for one in run.candidates if one.family is Family.COVER]
+    assert covers and all(look_at(one, CUT, keyhole).refusal is None for one in covers)
+    assert min(one.match for one in covers) > 0.985
 
 
 @pytest.mark.parametrize("change", [{"guided": 0}, {"covers": False}, {"least_gap_mm": 9.0}, {"k": 3}])
@@ -84,6 +99,38 @@ def test_that_it_is_told_why_and_what_each_family_shows(run: Result, cover: Cand
     assert why_covered([one for one in run.candidates if one.trim is None], keyhole) is None
     (place, first) = first_of_families(run.candidates)[Family.COVER]
     assert run.candidates[place] == first == cover
+
+
+def test_that_what_no_closed_sheet_shows_is_told_of_whatever_was_found(run: Result, keyhole: Outline) -> None:
+    closed = [one for one in run.candidates if one.trim is None]
+    covers = [one for one in run.candidates if one.trim is not None]
+    codes = [closed_limit(some, keyhole) for some in ((), closed, covers, run.candidates)]
+    assert [note.code for note in codes if note is not None] == [
+        "covers.turns_back_ahead",
+        "covers.turns_back_closed",
+        "covers.turns_back_cover",
+        "covers.turns_back",
+    ]
+    assert all(note.text != note.code for note in codes if note is not None)
+    found = closed_limit(closed, keyhole)
+    assert found is not None and found.fields["closed"] == pytest.approx(100 * max(one.match for one in closed))
+    arms = closed_limit((), load("gear"))
+    assert arms is not None and arms.code == "covers.many_arms_ahead" and arms.fields["sides"] == 4
+
+
+def test_that_nothing_is_told_where_nothing_is_known(run: Result, keyhole: Outline) -> None:
+    closed = [one for one in run.candidates if one.trim is None]
+    assert closed_limit((), load("heart")) is None and closed_limit((), None) is None
+    half_open = [replace(one, score=replace(one.score, phi=1.0)) for one in closed]
+    assert closed_limit(half_open, keyhole) is None  # the sheet is not closed there
+    assert closed_limit((), keyhole, start_shape("notch")) is None  # not convex
+    assert closed_limit((), load("gear"), start_shape("hexagon")) is None  # it has sides enough
+    assert closed_limit((), load("gear"), start_shape("auto")) is None  # as the next run may choose
+    document = Document(keyhole, candidates=tuple(closed), chosen=0)
+    assert limit_of(document) is not None
+    pinned = replace(document.fabrication, construction=Construction.PINNED)
+    assert limit_of(replace(document, fabrication=pinned)) is None  # pieces reach beyond their sheet
+    assert limit_of(Document(keyhole, replace(document.settings, phi=1.0))) is None
 
 
 def test_that_outlines_of_both_families_have_the_match_that_is_told(run: Result, keyhole: Outline) -> None:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 import shapely
 from shapely.geometry import box
 
-from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.auto_grid import choose_grid, panels_for_holes
 from kirigami_studio.pipeline.pool import Pool
@@ -48,9 +46,7 @@ def test_that_a_thin_wall_between_holes_counts_as_well() -> None:
     assert panels_for_holes(near) > panels_for_holes(apart) > panels_for_holes(apart.filled) == 0.0
 
 
-def test_that_pieces_on_pins_refuse_a_target_with_holes_before_the_run() -> None:
+def test_that_pieces_on_pins_are_not_trimmed_for_a_hole() -> None:
     cut = FabricationSettings(material="plywood-co2", construction=Construction.PINNED, width_mm=300.0)
-    with pytest.raises(FabricationError) as refused:
-        request_for(square((0.0, 0.0, 0.4)), DesignSettings(), cut)
-    assert refused.value.code == "pinned.target_has_holes"
-    assert request_for(square((0.0, 0.0, 0.4)).filled, DesignSettings(), cut).pinned
+    request = request_for(square((0.0, 0.0, 0.4)), DesignSettings(), cut)
+    assert request.pinned and request.target.holes and not request.trims and not request.silhouette.holes

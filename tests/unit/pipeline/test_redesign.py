@@ -11,14 +11,15 @@ from uneven_sheets import uneven_sheet
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.second_target import SecondTarget, second_matches
-from kirigami_studio.evaluate.trimming import KEEP
+from kirigami_studio.evaluate.trimming import KEEP, trim
 from kirigami_studio.fabricate.material import find_material
-from kirigami_studio.foundation.errors import Cancelled, FabricationError
+from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.pipeline import redesign
 from kirigami_studio.pipeline.fit_again import fit_again
 from kirigami_studio.pipeline.redesign import keep_for_connectors, refitted, rescored, sampled, trimmed
 from kirigami_studio.pipeline.request import Request
@@ -58,11 +59,29 @@ def test_that_a_trim_is_added_beside_the_designs_own_field_and_score(
     assert replace(trimmed_candidate, trim=None) == candidate
 
 
-def test_that_a_change_by_hand_is_scored_and_loses_the_trim(trimmed_candidate: Candidate, heart: Outline) -> None:
-    sheet = Sheet(RatioField(trimmed_candidate.sheet.field.ratio * 1.01))
+def test_that_a_change_by_hand_is_scored_and_trimmed_again(trimmed_candidate: Candidate, heart: Outline) -> None:
+    before = trimmed_candidate.trim
+    assert before is not None
+    sheet = before.sheet.with_field(RatioField(before.sheet.field.ratio * 1.01))
     changed = rescored(trimmed_candidate, sheet, heart)
-    assert changed.trim is None and changed.origin is Origin.EDITED and changed.sheet == sheet
+    assert changed.origin is Origin.EDITED and changed.sheet == sheet == changed.final_sheet
     assert changed.score.siou == pytest.approx(evaluate(deploy(sheet), heart).siou, abs=0.01)
+    again = changed.trim
+    assert again is not None and (again.keep, again.deep, again.phi) == (before.keep, before.deep, before.phi)
+    assert again.iou == pytest.approx(before.iou, abs=0.02) and again.iou > again.untrimmed_iou
+    assert again.iou >= trim(deploy(sheet), heart, before.phi, before.pose, before.keep).iou
+
+
+def test_that_a_change_after_which_nothing_can_be_trimmed_loses_the_trim(
+    trimmed_candidate: Candidate, heart: Outline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def crossing(*_: object) -> None:
+        raise KirigamiError("trim.crosses_itself")
+
+    monkeypatch.setattr(redesign, "trim", crossing)
+    sheet = trimmed_candidate.final_sheet
+    changed = rescored(trimmed_candidate, sheet.with_field(RatioField(sheet.field.ratio * 1.01)), heart)
+    assert changed.trim is None and changed.origin is Origin.EDITED
 
 
 def test_that_a_fit_keeps_locked_ratios_exactly_and_remembers_the_sample(candidate: Candidate, heart: Outline) -> None:

@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.laying import lost_to_chords, start_error
@@ -19,8 +21,9 @@ from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.chords import HOLLOW_WEIGHT, WEIGHT, Chords
 from kirigami_studio.polish.continuation import FitOptions, Way, first_angles, fit_from_uniform, lifted
-from kirigami_studio.polish.flat_sheet import can_have, uniform_sheet, width_in_cells
-from kirigami_studio.polish.objective import Objective
+from kirigami_studio.polish.flat_sheet import can_have, first_sheet, uniform_sheet, width_in_cells
+from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.polish.objective import FitPhase, Objective
 from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
 from kirigami_studio.polish.sensitivity import OutlineModel
 from kirigami_studio.polish.symmetry import shared_symmetries
@@ -59,6 +62,15 @@ def test_that_starts_with_hollows_are_held_more_softly_and_a_weight_scales_both(
 
     assert [weight(name, 1.0) for name in ("circle", "egg", "ellipse")] == [WEIGHT] * 3
     assert [weight(name, 0.5) for name in ("heart", "bean", "leaf", "vase")] == [0.5 * HOLLOW_WEIGHT] * 4
+
+
+def test_that_no_horn_sticks_out_at_the_corners_of_what_a_circle_opens_into() -> None:
+    square = load("square")
+    phases = FitPhase(12, 0.03, 3e-3), FitPhase(12, 0.005, 3e-4)
+    fit = polish(first_sheet((8, 8), CIRCLE, free_rim=True), square, phases=phases, free_rim=True)
+    outline = fit.pose.apply(deploy(fit.sheet).outline(0.0))
+    assert exact_iou(outline, square) > 0.98
+    assert shapely.distance(shapely.points(outline), square.polygon).max() < 0.025
 
 
 def test_that_the_objective_has_its_exact_slopes() -> None:

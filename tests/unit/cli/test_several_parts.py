@@ -1,0 +1,158 @@
+"""A logo of two parts on the command line and in Python: two sheets to one scale, one project, one cut file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+from shapely.geometry import Polygon
+
+import kirigami_studio as ks
+from kirigami_studio.cli import main
+from kirigami_studio.foundation.errors import ProjectError, UsageError
+from kirigami_studio.project.sheet_size import size_of
+from kirigami_studio.project.store import load, save
+from kirigami_studio.project.target_parts import parts_as_cut
+from tests.refusals import refused
+
+pytestmark = pytest.mark.torch
+#: A stroke with a dot above it, as an "i": 14 mm and 28 mm wide.
+LETTER = '<circle id="dot" cx="20" cy="16" r="7"/><rect id="stem" x="6" y="30" width="28" height="30"/>'
+QUICK = ["--grid", "3x3", "--k", "1", "--no-polish", "--material", "film-uv", "--json"]
+
+
+@pytest.fixture(scope="module")
+def letter(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("letter") / "letter.svg"
+    size = 'width="40mm" height="70mm" viewBox="0 0 40 70"'
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{LETTER}</svg>', encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def made(letter: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, object]]:
+    """The folder that ``design`` writes, and its answer."""
+    folder = tmp_path_factory.mktemp("out")
+    answers: list[dict[str, object]] = []
+    patch = pytest.MonkeyPatch()
+    patch.setattr("kirigami_studio.cli.design.print_json", answers.append)
+    wish = ["design", str(letter), "--parts", "all", "--join", "each", "--width-mm", "60", "--out", str(folder)]
+    try:
+        assert main([*wish, *QUICK]) == 0
+    finally:
+        patch.undo()
+    (answer,) = answers
+    return folder, json.loads(json.dumps(answer, default=list))
+
+
+def outlines_of(path: Path) -> list[Polygon]:
+    """Outlines in a cut file, by ezdxf and shapely alone."""
+    lines = ezdxf.readfile(path).modelspace().query('LWPOLYLINE[layer=="OUTLINE"]')
+    return [Polygon([(x, y) for x, y, *_ in ezdxf.path.make_path(line).flattening(1e-3)]) for line in lines]
+
+
+def test_that_each_part_has_its_designs_and_the_file_both_sheets_apart(made) -> None:
+    folder, answer = made
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "candidates.json",
+        "cut.dxf",
+        "design.kiri",
+        "layout.svg",
+        "preview.png",
+    ]
+    parts = answer["parts"]
+    assert [part["name"] for part in parts] == ["dot", "stem"]
+    assert all(part["candidates"] and part["verdict"]["level"] for part in parts)
+    assert answer["pieces"] == 2 and all(one["ok"] for one in answer["verified"])
+    assert [one["part"] for one in answer["verified"]] == ["dot", "stem"]
+    one, other = outlines_of(folder / "cut.dxf")
+    assert one.distance(other) > 4.0
+
+
+def test_that_both_sheets_open_to_the_scale_of_the_drawing(made) -> None:
+    folder, answer = made
+    project = load(folder / "design.kiri")
+    parts = parts_as_cut(project)
+    sizes = [max(size_of(part).opened) for part in parts]
+    assert sizes[0] / sizes[1] == pytest.approx(14.0 / 30.0, rel=1e-6)
+    assert sizes[1] == pytest.approx(30.0 * answer["mm_per_unit"], rel=1e-6)
+    # The largest part's sheet is as wide as asked for, as far as that is known before the run.
+    assert parts[1].fabrication.width_mm == pytest.approx(60.0, rel=0.1)
+    # By area: a closed sheet covers what it covers flat.
+    areas = sorted(outline.area for outline in outlines_of(folder / "cut.dxf"))
+    wanted = [part.target.polygon.area * (max(size_of(part).opened) / np.ptp(part.target.points, axis=0).max()) ** 2
+              for part in parts]  # fmt: skip
+    assert areas == pytest.approx(sorted(wanted), rel=0.1)
+
+
+def test_that_the_cut_file_carries_the_project_and_passes_its_check_beside_it(made, tmp_path, capsys) -> None:
+    folder, answer = made
+    assert main(["check", str(folder / "cut.dxf"), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["sound"] and report["pieces"] == 2 and len(report["sheets"]) == 2
+    assert report["verdict_at_export"] == answer["verdict"]["level"]
+    code = main(["check", str(folder / "cut.dxf"), "--design", str(folder / "design.kiri"), "--json"])
+    report = json.loads(capsys.readouterr().out)
+    assert report["verdict"]["level"] == answer["verdict"]["level"] and code == (0 if report["ok"] else 1)
+    carried = load(folder / "cut.dxf")
+    assert [part.target.name for part in carried.parts] == ["dot", "stem"]
+    assert [len(part.candidates) for part in carried.parts] == [1, 1]
+
+
+def test_that_the_file_of_another_project_is_told(made, tmp_path: Path, capsys) -> None:
+    folder, _ = made
+    other = tmp_path / "other.kiri"
+    save(ks.decode(np.full((3, 3), 1.1)).for_target("square").document, other)
+    assert main(["check", str(folder / "cut.dxf"), "--design", str(other), "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["verdict"]["level"] == "will_not_work"
+
+
+def test_that_one_part_is_exported_by_its_name_or_number(made, tmp_path: Path, capsys) -> None:
+    folder, _ = made
+    project = str(folder / "design.kiri")
+    for words in ("dot", "1"):
+        path = tmp_path / f"{words}.dxf"
+        main(["export", project, "--part", words, "--out", str(path), "--json"])
+        assert json.loads(capsys.readouterr().out)["pieces"] == 1 and len(outlines_of(path)) == 1
+    assert (tmp_path / "dot.dxf").read_bytes() == (tmp_path / "1.dxf").read_bytes()
+    assert main(["export", project, "--part", "tail", "--out", str(tmp_path / "tail.dxf")]) == 2
+    assert "dot, stem" in capsys.readouterr().err
+
+
+def test_that_everything_goes_to_a_folder_with_one_for_each_part(made, tmp_path: Path, capsys) -> None:
+    folder, _ = made
+    assert main(["export", str(folder / "design.kiri"), "--all", "--out", str(tmp_path / "all"), "--json"]) == 0
+    json.loads(capsys.readouterr().out)
+    assert {path.name for path in (tmp_path / "all").iterdir()} == {"cut.dxf", "cut.svg", "dot", "stem"}
+    assert len(outlines_of(tmp_path / "all" / "cut.dxf")) == 2
+    assert len(outlines_of(tmp_path / "all" / "stem" / "cut.dxf")) == 1
+
+
+def test_that_pieces_cannot_be_several_where_one_shape_is_wanted(letter: Path, capsys) -> None:
+    assert main(["design", str(letter), "--parts", "all", "--join", "each", "--scheduler", "tcp://x:1"]) == 2
+    with refused(UsageError, "parts.several_targets", count=2):
+        ks.load_target(letter, join="each")
+
+
+def test_that_a_drawing_of_one_piece_is_designed_as_usual(letter: Path, tmp_path: Path, capsys) -> None:
+    wish = ["design", str(letter), "--parts", "dot", "--join", "each", "--out", str(tmp_path), *QUICK]
+    assert main(wish) == 0
+    assert "best" in json.loads(capsys.readouterr().out)
+    assert not load(tmp_path / "design.kiri").other_parts
+
+
+def test_that_python_gives_the_same_parts(made, letter: Path, tmp_path: Path) -> None:
+    folder, _ = made
+    assert [target.name for target in ks.load_parts(letter)] == ["dot", "stem"]
+    project = ks.load_project(folder / "design.kiri")
+    parts = ks.Parts(project.document)
+    assert parts.names == ("dot", "stem") and len(parts) == 2
+    assert parts["dot"].target.name == "dot" and [len(designs) for designs in parts] == [1, 1]
+    found = parts.export(tmp_path / "letter.svg")
+    assert found.ok and set(found.verdicts) == {"dot", "stem"} and len(found.verifications) == 2
+    empty = ks.Parts(load(folder / "design.kiri"))
+    with refused(ProjectError, "api.no_such_name"):
+        _ = empty["tail"]
