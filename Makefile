@@ -38,7 +38,7 @@ help:
 	@echo "make bench   time the exact geometry"
 	@echo "make consumers  check cut files with MeerK40t, installed in an environment of its own"
 	@echo "make demo    design a heart on the command line into out/heart"
-	@echo "make states  save pictures of every state of the window to out/states, at 200 % to out/states-200"
+	@echo "make states  save pictures of every state of the window to out/states, at 200 % to out/states-200, of its pages to out/pages-*"
 	@echo "make pairs   make the bundled designs from one shape to another: resources/pairs"
 	@echo "make pictures  make the pictures of README, guide and tutorials with the program"
 	@echo "make shapes  make docs/pictures/shapes.png: three states of the first design for every library silhouette"
@@ -172,6 +172,9 @@ demo: setup
 states: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states-200 --scale 2
+	for language in en de; do for scale in 1 2; do \
+	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.page_states \
+	    --language $$language --scale $$scale --out out/pages-$$language-$$scale || exit 1; done; done
 
 pairs: setup
 	$(BIN)/python packaging/make_pairs.py
@@ -193,7 +196,7 @@ pictures: setup
 	cp out/pictures/de/pairs-small.png resources/guide/de/pairs.png
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.tutorial_pictures --out docs/pictures/tutorials
 	$(BIN)/kirigami-studio design heart --grid 6x7 $(PLYWOOD)/1-heart
-	$(BIN)/kirigami-studio design hexagon --grid auto $(PLYWOOD)/2-hexagon
+	$(BIN)/kirigami-studio design star --grid 8x8 $(PLYWOOD)/2-star
 	$(BIN)/kirigami-studio design square --start circle --grid auto $(PLYWOOD)/3-disk
 	$(BIN)/python -m kirigami_studio.lab.demonstrations.assembled_pieces out/plywood/*/design.kiri --out docs/pictures/plywood.png
 	$(BIN)/python -m kirigami_studio.lab.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \

@@ -20,6 +20,8 @@ import svgelements
 from shapely.geometry import Polygon
 
 Ring = tuple[np.ndarray, bool]  #: points, and whether they are those of a circle
+#: Least area of a drilled hole, as a share of that of a circle with its circumference; the next are octagons.
+ROUND = 0.98
 #: Layers whose lines are engraved.
 ENGRAVED = ("NAME", "ARTWORK")
 
@@ -138,7 +140,8 @@ def recognise(folder: Path, kind: str, kerf_mm: float) -> Recognised:
     """Read the files of a kind, and recognise every piece once."""
     record = json.loads((folder / "pieces.json").read_text())
     wanted = {piece["id"]: piece for piece in record["pieces"]}
-    whole = {name: filleted(Polygon(piece["outline"]), kerf_mm) for name, piece in wanted.items()}
+    meant = {name: with_openings(piece) for name, piece in wanted.items()}
+    whole = {name: filleted(area, kerf_mm) for name, area in meant.items()}
     found: dict[str, tuple[Polygon, np.ndarray]] = {}
     beams: dict[str, tuple[Path, Polygon, np.ndarray, np.ndarray]] = {}
     outline_mm = holes_mm = 0.0
@@ -157,12 +160,11 @@ def recognise(folder: Path, kind: str, kerf_mm: float) -> Recognised:
             here = np.array([holes[at] for at in mine]).reshape(-1, 2)
             name, turn, shift, miss = recognised(finished, here, layer, wanted, whole, found)
             area = shapely.transform(finished, lambda points, turn=turn, shift=shift: points @ turn.T + shift)
-            meant = Polygon(wanted[name]["outline"])
-            fillets = whole[name]
-            corners = shapely.points(shapely.get_coordinates(area))
-            outline_mm = max(outline_mm, shapely.distance(shapely.points(np.array(meant.exterior.coords)), area).max(),
-                             shapely.distance(corners, fillets).max())  # fmt: skip
-            radius = [np.sqrt(Polygon(ring).area / np.pi) for ring in wanted[name]["holes"]]
+            asked, corners = (shapely.points(shapely.get_coordinates(one)) for one in (meant[name], area))
+            outline_mm = max(
+                outline_mm, shapely.distance(asked, area).max(), shapely.distance(corners, whole[name]).max()
+            )
+            radius = [np.sqrt(Polygon(ring).area / np.pi) for ring in round_holes(wanted[name])]
             sizes = [abs(radii[at] + 0.5 * kerf_mm - radius[0]) for at in mine]
             holes_mm = max(holes_mm, miss, *sizes, 0.0)
             found[name] = (area, here @ turn.T + shift)
@@ -212,6 +214,22 @@ def posed_artwork(folder: Path, read: Recognised, step: int) -> list[np.ndarray]
     return posed
 
 
+def is_round(ring: list[list[float]]) -> bool:
+    """Whether a ring is a drilled hole, and no opening of another form."""
+    area = Polygon(ring)
+    return 4.0 * np.pi * area.area > ROUND * area.length**2
+
+
+def round_holes(piece: dict) -> list[list[list[float]]]:
+    """The drilled holes among the rings of a piece."""
+    return [ring for ring in piece["holes"] if is_round(ring)]
+
+
+def with_openings(piece: dict) -> Polygon:
+    """A piece without what is drilled."""
+    return Polygon(piece["outline"], [ring for ring in piece["holes"] if not is_round(ring)])
+
+
 def filleted(area: Polygon, kerf_mm: float) -> Polygon:
     """What a round beam leaves that goes round an area."""
     return area.buffer(0.5 * kerf_mm, quad_segs=64).buffer(-0.5 * kerf_mm, quad_segs=64) if kerf_mm else area
@@ -228,12 +246,13 @@ def recognised(
     """The piece of a layer that is not found yet and fits best; its turn, its shift, and how far its holes are off."""
     best = ("", np.eye(2), np.zeros(2), np.inf)
     for name, piece in wanted.items():
-        if piece["layer"] != layer or name in found or len(piece["holes"]) != len(holes):
+        drilled = round_holes(piece)
+        if piece["layer"] != layer or name in found or len(drilled) != len(holes):
             continue
         meant = whole[name]
         if abs(meant.area - area.area) > 0.5:
             continue
-        middles = np.array([Polygon(ring).centroid.coords[0] for ring in piece["holes"]]).reshape(-1, 2)
+        middles = np.array([Polygon(ring).centroid.coords[0] for ring in drilled]).reshape(-1, 2)
         for order in itertools.permutations(range(len(holes))):
             turn, shift, miss = fitted(
                 np.vstack([holes, area.centroid.coords[0]]), np.vstack([middles[list(order)], meant.centroid.coords[0]])

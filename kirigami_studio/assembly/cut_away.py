@@ -16,7 +16,7 @@ from kirigami_studio.assembly.motion import discs, polygons
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.evaluate.boundary import as_plane
 from kirigami_studio.evaluate.kept_panels import PanelTable, all_panels
-from kirigami_studio.evaluate.notches import hinges_of, labelled, largest_set
+from kirigami_studio.evaluate.notches import hinges_of, largest_set
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
@@ -30,12 +30,10 @@ FILLED = 0.5
 SHOWN = 2.0
 #: Voids of which the panels lie in holes by this share go at first.
 MOSTLY = 0.5
-#: A change has to gain this, mm2, and so often all voids are looked at.
-LEAST_GAIN_MM2, ROUNDS = 1.0, 4
+#: A change has to gain this, mm2, and so often all voids are looked at twice.
+LEAST_GAIN_MM2, ROUNDS = 1.0, 3
 #: A symmetric sheet keeps its symmetry where panels lie in holes by shares that differ by no more from their images'.
 ALIKE = 0.1
-#: Pins in holes that are farther from the rim than this share of their wall's radius are left out where others suffice.
-IN_HOLE = 0.0
 #: Nearer than this (unit cells) what a trim left of a panel has its corner.
 AT_CORNER = 0.02
 
@@ -60,17 +58,16 @@ def panels_left(design: PosedDesign, shown: Polygon, cell_mm: float, options: Pi
     return _panels_of(_OpenHoles(design, shown, cell_mm, options).voids(), grid)
 
 
-def pins_in_holes(deployment: Deployment, phi: float, shown: Polygon, cell_mm: float, options: PinOptions) -> list[int]:
-    """Nodes of pins whose walls are mostly in holes of the target at ``phi``, the farthest in first."""
+def pins_in_holes(deployment: Deployment, panels: PanelTable, phi: float, shown: Polygon, cell_mm: float) -> list[int]:
+    """Nodes of pins of panels that are in holes of the target at ``phi``, the farthest in first."""
     if not shown.interiors:
         return []
     holes = shapely.union_all([Polygon(ring) for ring in shown.interiors])
-    nodes = np.unique(deployment.topology.void_nodes)
+    nodes = np.unique(panels.corners[panels.hinged])
     places = shapely.points(deployment.nodes(phi)[nodes] * cell_mm)
-    inside: FloatArray = np.asarray(shapely.distance(places, shown))
-    inside[~shapely.contains(holes, places)] = 0.0
-    deep = np.flatnonzero(inside > IN_HOLE * options.keep_mm)
-    found: list[int] = nodes[deep[np.argsort(-inside[deep], kind="stable")]].tolist()
+    inside = shapely.contains(holes, places)
+    deep = np.asarray(shapely.distance(places[inside], shown))
+    found: list[int] = nodes[inside][np.argsort(-deep, kind="stable")].tolist()
     return found
 
 
@@ -163,14 +160,18 @@ class _OpenHoles:
         near = _mean_around(self._near.reshape(self._grid[0] + 1, -1).astype(np.float64)) > 0.0
         best = largest_set(self._share < MOSTLY)
         missed = self._missed(best)
-        for _ in range(ROUNDS):
-            changed = False
+        # Single voids first: those that others hang on go only where that is worth more.
+        for alone in (True, False) * ROUNDS:
+            before = best
             for void in np.flatnonzero(near):
                 other = best.copy()
                 other.flat[self._orbits[void]] = not best.flat[void]
-                if labelled(other)[1] == 1 and (found := self._missed(other)) < missed - LEAST_GAIN_MM2:
-                    best, missed, changed = other, found, True
-            if not changed:
+                whole = largest_set(other)
+                if not whole.any() or (alone and not np.array_equal(whole, other)):
+                    continue
+                if (found := self._missed(whole)) < missed - LEAST_GAIN_MM2:
+                    best, missed = whole, found
+            if not alone and best is before:
                 break
         return best
 

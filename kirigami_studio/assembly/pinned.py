@@ -106,7 +106,7 @@ def pinned(
     panels = panels_left(design, shown, cell_mm, options)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
     with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
-        unwanted = pins_in_holes(deployment, phi, shown, cell_mm, options)
+        unwanted = pins_in_holes(deployment, panels, phi, shown, cell_mm)
         needless = [] if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
         shaping = Shaping.of(deployment, cell_mm, phi, options, panels, unwanted, needless)
         if only_whole and shaping.broken:

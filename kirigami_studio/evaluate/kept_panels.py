@@ -132,7 +132,7 @@ def kept_part(
 def moved_off(
     panel: Polygon, part: Polygon, corners: FloatArray, hinged: BoolArray, guests: FloatArray, keep: float
 ) -> list[Polygon]:
-    """Versions of a part whose edge runs into no side of its panel near the connectors that rest there from beyond.
+    """Versions of a part whose edge keeps off connectors that rest on the panel's sides.
 
     The edge of a part is a rim; a connector beyond it needs ``keep`` of one side alone.  The first version has the
     material around them, the second one is without it, if it is as well in one piece with its hinges.
@@ -143,7 +143,7 @@ def moved_off(
         Those connectors.
     """
     side = shapely.LineString(corners[[0, 1, 2, 3, 0]])
-    discs = shapely.buffer(shapely.points(guests), keep)
+    discs: GeometryArray = np.asarray(shapely.buffer(shapely.points(guests), keep), dtype=object)
     near = shapely.intersection(side, shapely.buffer(shapely.points(guests), keep, quad_segs=2))
     along = shapely.length(shapely.intersection(near, shapely.buffer(part, GRID, join_style="mitre")))
     halved = (along > SLIVER * keep) & (along < shapely.length(near) - SLIVER * keep)
@@ -289,7 +289,10 @@ def _in_one_piece(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: f
 
 
 def _strips(panel: Polygon, wanted: BaseGeometry, around: _Around, keep: float) -> GeometryArray:
-    """Straight connections between hinges, those first that add least; they may reach beyond the panel."""
+    """Straight connections between hinges, least added area first.
+
+    They may reach beyond the panel.
+    """
     pairs = list(combinations(range(len(around.points)), 2))
     strips: GeometryArray = np.asarray(shapely.buffer(shapely.linestrings(around.points[pairs]), keep), dtype=object)
     within = shapely.intersection(strips, panel)

@@ -145,7 +145,8 @@ class _NotchCut:
         self._common = shared_parts(self._panels, targets)
         self._area, self._inside = shapely.area(self._panels), shapely.area(self._common)
         # Panels (P,) that have stayed whole so far, and their area.
-        self._middle, self._united = np.ones(len(corners), dtype=np.bool_), NOTHING
+        self._middle = np.ones(len(corners), dtype=np.bool_)
+        self._united: BaseGeometry = NOTHING
         self._known: dict[tuple[int, bytes], tuple[float, BaseGeometry | None]] = {}
 
     def first(self) -> BoolArray:
@@ -153,15 +154,15 @@ class _NotchCut:
         mostly = largest_set(self._shares() >= MOSTLY)
         if self._open_inside:
             return mostly
-        outside, _ = labelled(np.pad(~mostly, 1, constant_values=True), EIGHT_WAYS)
+        outside, _ = _labelled(np.pad(~mostly, 1, constant_values=True), EIGHT_WAYS)
         whole: BoolArray = outside[1:-1, 1:-1] != outside[0, 0]
         return whole
 
     def _is_one(self, voids: BoolArray) -> bool:
         """Whether voids hang together by hinges, and so does all around them unless it may be open."""
-        if labelled(voids)[1] != 1:
+        if _labelled(voids)[1] != 1:
             return False
-        return self._open_inside or labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)[1] == 1
+        return self._open_inside or _labelled(np.pad(~voids, 1, constant_values=True), EIGHT_WAYS)[1] == 1
 
     def _shares(self) -> FloatArray:
         """Part of the panels around each void that lies on the target: (m, n)."""
@@ -209,7 +210,7 @@ class _NotchCut:
         return [int(void) for void in np.flatnonzero(beside)]
 
     def _parts_worth(self, voids: BoolArray, hinged: BoolArray) -> float:
-        """What the parts with these voids and hinges add to the silhouette's worth."""
+        """Worth that the parts with these voids and hinges add to the silhouette."""
         return sum(self._part(k, hinged[k])[0] for k in range(len(hinged))) + float(self._void_gain[voids].sum())
 
     def _draft(self, voids: BoolArray, hinged: BoolArray) -> _NotchDraft:
@@ -254,7 +255,7 @@ class _NotchCut:
         return float(changes + sum(self._part(k, new[k])[0] for k in panels.tolist()))
 
     def _most(self, k: int, hinged: BoolArray) -> float:
-        """What a panel with these hinges may add at most."""
+        """Bound of the worth that a panel with these hinges adds."""
         key = k, hinged.tobytes()
         if key in self._known:
             return self._known[key][0]
@@ -276,14 +277,14 @@ class _NotchCut:
         return (shared - STICKING_OUT * (area - shared) if shape is None else self._worth(k, shape)), shape
 
     def _worth(self, k: int, shape: Polygon) -> float:
-        """What a part of a panel adds to the silhouette's worth."""
+        """Worth of a part of a panel to the silhouette."""
         shared, far = float(shape.intersection(self._common[k]).area), 0.0
         if self._open_inside:
             far = float(shape.difference(shapely.buffer(self._targets[k], self._keep)).area)
         return shared - STICKING_OUT * (float(shape.area) - shared) - FAR_OFF * far
 
     def _clear_of_guests(self, shapes: GeometryArray, hinged: BoolArray) -> GeometryArray:
-        """The parts of all panels, with room for the connectors that rest on their sides from beyond."""
+        """The parts of all panels, with room for connectors that rest on their sides."""
         panels, cleared = all_panels(self._rows, self._columns), shapes.copy()
         place, there = np.zeros((panels.corners.max() + 1, 2)), np.zeros(panels.corners.max() + 2, dtype=np.bool_)
         place[panels.corners] = self._corners
@@ -369,7 +370,7 @@ def _hinge_pairs(rows: int, columns: int) -> tuple[tuple[IntArray, IntArray], tu
     return (panel, corner), (neighbour, corner + 2)
 
 
-def labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArray, int]:
+def _labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArray, int]:
     """Numbers of the connected sets of voids, and how many there are."""
     # Imported when it is needed: it takes long, and the window starts without it.
     from scipy.ndimage import label
@@ -380,7 +381,7 @@ def labelled(voids: BoolArray, touching: IntArray | None = None) -> tuple[IntArr
 
 def largest_set(voids: BoolArray) -> BoolArray:
     """The largest connected set of voids."""
-    numbers, count = labelled(voids)
+    numbers, count = _labelled(voids)
     if count == 0:
         return voids
     largest: BoolArray = numbers == 1 + int(np.argmax(np.bincount(numbers.ravel())[1:]))

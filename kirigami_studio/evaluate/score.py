@@ -6,6 +6,7 @@ Each is defined in the module of its name.
 from __future__ import annotations
 
 import cmath
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, astuple, dataclass, replace
 from functools import lru_cache
@@ -19,13 +20,17 @@ from kirigami_studio.evaluate.siou import PIXELS_OFF, ROUNDING, ShapeMatch, matc
 from kirigami_studio.evaluate.total_variation import log_variation, total_variation
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.symmetry import TOLERANCE, turn_overlap
 
 #: Turns below this (radians) come with any change.
 SAME_TURN = 0.1
 #: Exact IoU that a design may lack to stay turned as it was.  After changes of single ratios by 16 % staying cost a
 #: circle, star or hexagon at most 0.00013 (12 changes each); a design that is clearly better turned may turn.
 STAY = 0.003
+#: The same for a mirror axis that stands upright.
+AS_GOOD = 0.001
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +92,7 @@ def evaluate_many(deployments: Sequence[Deployment], outline: Outline, phi: floa
         checks, figures = feasibility_of_many(sheets, phi), evenness_of_many(sheets)
         for index, sheet, match, check, even in zip(members, sheets, matches, checks, figures, strict=True):
             floor = _uniform_match(sheet.sheet.plain(), phi, outline)
-            found[index] = _complete(sheet, match, check, even, floor, phi)
+            found[index] = _complete(sheet, _upright(sheet, match, outline, phi), check, even, floor, phi)
     return [found[index] for index in range(len(deployments))]
 
 
@@ -163,6 +168,30 @@ def evaluate_near(deployment: Deployment, outline: Outline, phi: float, pose: Si
         return best
     gain = near.siou - best.uniform_siou
     return replace(best, siou=near.siou, siou_gain=gain, iou_exact=near.iou_exact, transform=near.transform)
+
+
+def _upright(deployment: Deployment, match: ShapeMatch, outline: Outline, phi: float) -> ShapeMatch:
+    """Turn a match so that the mirror axis of its design is upright.
+
+    Only where the target looks the same turned so.
+
+    A star has five axes: which of them a design has is decided by rounding, and one that leans looks like a mistake.
+    """
+    symmetry = symmetry_of(deployment.sheet)
+    if symmetry is None or not symmetry.mirrors or np.ptp(deployment.field.ratio) == 0.0:
+        return match
+    sheets_own, apart = 0.0 if symmetry is Symmetry.TOP_BOTTOM else 0.5 * math.pi, math.pi
+    if symmetry is Symmetry.TWO_MIRRORS:
+        apart = 0.5 * math.pi
+    off = math.remainder(0.5 * math.pi - sheets_own - match.transform.angle, apart)
+    if abs(off) < SAME_TURN:
+        return match
+    turns = [off + apart * number for number in range(round(2.0 * math.pi / apart))]
+    same = [turn for turn in turns if turn_overlap(outline, turn) >= TOLERANCE]
+    poses = [Similarity(1.0, turn).compose(match.transform) for turn in same]
+    found = [siou_near(deployment.outline(phi), outline, pose) for pose in poses]
+    best = max(found, key=lambda one: one.iou_exact, default=match)
+    return best if best.iou_exact >= match.iou_exact - AS_GOOD else match
 
 
 def _complete(

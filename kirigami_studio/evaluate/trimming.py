@@ -41,8 +41,8 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Depth (unit cells) of the material that stays at every hinge unless something else is asked for.
 KEEP = 0.15
-#: The same where the target has holes: what stays at hinges in a hole is seen, of an edge hardly.
-HOLE_KEEP = 0.1
+#: The same of holes and notches: what stays at hinges in one is seen, of an edge hardly.
+DEEP_KEEP = 0.1
 #: A hole of which less is open counts as closed; and below this area (unit cells squared) that is for its size.
 MOSTLY_OPEN, SMALL_HOLE = 0.5, 1.0
 #: Room for connectors takes ratios off their images by less than this (log10); it leaves designs symmetric to the eye.

@@ -68,7 +68,7 @@ class PrintedPieces:
         return as_plane(self.posed.assembly.poses(math.pi)[:, :2])
 
     @cached_property
-    def areas(self) -> tuple[Polygon, ...]:
+    def areas(self) -> tuple[BaseGeometry, ...]:
         """The pieces with their openings and holes, each in its frame, mm."""
         return tuple(map(_area, self.posed.assembly.pieces))
 
@@ -130,7 +130,7 @@ def _seen(printed: PrintedPieces, state: SheetState, bands: BaseGeometry | None,
     """Parts of pieces that are seen where a picture is laid, without the other picture."""
     factors, shifts = printed.places(state)
     pieces = printed.posed.assembly.pieces
-    flat = list(printed.areas)
+    flat: list[BaseGeometry] = list(printed.areas)
     if bands is not None:
         placed = [_moved(area, 1.0, complex(at)) for area, at in zip(flat, printed.origins, strict=True)]
         shares = shapely.intersection(placed, bands) if number else shapely.difference(placed, bands)
@@ -194,7 +194,7 @@ def posed_patches(printed: PrintedPieces, artwork: Artwork, phi: float) -> tuple
     )
 
 
-def _area(piece: Piece) -> Polygon:
+def _area(piece: Piece) -> BaseGeometry:
     holes = [
         shapely.get_coordinates(Point(hole.centre).buffer(0.5 * hole.diameter_mm, quad_segs=ROUND))
         for hole in piece.holes
@@ -203,7 +203,8 @@ def _area(piece: Piece) -> Polygon:
     if not holes:
         return whole
     # Holes may reach into openings, so that they are no rings of one polygon.
-    return shapely.difference(whole, shapely.union_all([Polygon(hole) for hole in holes]))
+    bored: BaseGeometry = shapely.difference(whole, shapely.union_all([Polygon(hole) for hole in holes]))
+    return bored
 
 
 def _moved(area: BaseGeometry, factor: complex, shift: complex) -> BaseGeometry:

@@ -122,15 +122,28 @@ def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> lis
     if by_mm == 0.0:
         return [ring]
     asked = Polygon(ring)
-    area = shapely.buffer(asked, by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
+    area: BaseGeometry = shapely.buffer(asked, by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
     least = closed_by(asked, by_mm)
     if farthest(area.buffer(-by_mm, quad_segs=beam_chords(by_mm)), least) > SHARP_MM:
-        area = shapely.simplify(shapely.buffer(asked, by_mm, quad_segs=beam_chords(by_mm)), SHARP_MM)
+        area = _with_fewer_corners(shapely.buffer(asked, by_mm, quad_segs=beam_chords(by_mm)), asked, by_mm)
     if not isinstance(area, Polygon) or area.is_empty:
         raise FabricationError("pieces.narrower_than_kerf", piece=piece.id, kerf_mm=kerf_mm)
     area = shapely.orient_polygons(area)
     pockets = [pocket for pocket in area.interiors if Polygon(pocket).area > DUST_MM2]
     return [shapely.get_coordinates(one)[:-1] for one in (area.exterior, *pockets)]
+
+
+def _with_fewer_corners(area: BaseGeometry, asked: Polygon, by_mm: float) -> BaseGeometry:
+    """The way of a beam round its corners without those that finished shapes do not show.
+
+    What a chord cuts off the way round a narrow spike takes many times as much from the tip of the spike.  Openings,
+    which are few, keep all.
+    """
+    if by_mm < 0.0:
+        return area
+    fewer = shapely.simplify(area, SHARP_MM)
+    finished = fewer.buffer(-by_mm, quad_segs=beam_chords(by_mm))
+    return fewer if farthest(asked, finished) <= 2.0 * SHARP_MM else area
 
 
 def beam_chords(half_mm: float) -> int:

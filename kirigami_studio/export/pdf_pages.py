@@ -14,7 +14,7 @@ import numpy as np
 
 from kirigami_studio.export import picture
 from kirigami_studio.export.paper import FOOTER_MM, MARGIN_MM, Size, Tile, Tiling
-from kirigami_studio.export.pdf_library import PDFPathObject, mm
+from kirigami_studio.export.pdf_library import Canvas, PDFPathObject, mm
 from kirigami_studio.export.picture import Colour
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError
@@ -80,7 +80,10 @@ def path_of(points: FloatArray, closed: bool) -> PDFPathObject:
 
 def draw_line(canvas: Any, points: FloatArray, closed: bool) -> None:
     """Draw a line (P, 2), mm on the page."""
-    canvas.drawPath(path_of(points, closed))
+    if isinstance(canvas, Canvas):
+        canvas.drawPath(path_of(points, closed))
+    else:
+        canvas.draw_line(points, closed)
 
 
 def stroke_colour(canvas: Any, colour: Colour) -> None:

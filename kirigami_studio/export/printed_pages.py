@@ -1,4 +1,4 @@
-"""Pages of a plan for a printer: the lines and words of its PDF, recorded for whoever draws them on paper.
+"""Pages of a plan for a printer: the lines and words of its PDF, recorded to be drawn again.
 
 :class:`PageRecorder` has the methods of reportlab's canvas that :mod:`~kirigami_studio.export.pdf_pages` calls, so a
 printed page and a page of the PDF are drawn by the same code.
@@ -74,22 +74,6 @@ def printed_pages(plan: CutPlan, paper: str) -> PrintedPages:
     return PrintedPages(paper, tiling, tuple(recorder.pages))
 
 
-class _Path:
-    """A path of :class:`PageRecorder`."""
-
-    def __init__(self) -> None:
-        self.points: list[tuple[float, float]] = []
-        self.closed = False
-
-    def moveTo(self, x: float, y: float) -> None:  # noqa: N802 - reportlab's name
-        self.points.append((x, y))
-
-    lineTo = moveTo  # noqa: N815 - reportlab's name
-
-    def close(self) -> None:
-        self.closed = True
-
-
 class PageRecorder:
     """Records drawing in points, as reportlab takes it, in mm."""
 
@@ -116,17 +100,13 @@ class PageRecorder:
     def setFont(self, _: str, points: float) -> None:  # noqa: N802 - reportlab's name
         self._font = points
 
-    def beginPath(self) -> _Path:  # noqa: N802 - reportlab's name
-        return _Path()
-
-    def drawPath(self, path: _Path) -> None:  # noqa: N802 - reportlab's name
-        points = np.array(path.points) * MM_PER_POINT
-        self._strokes.append(PageStroke(points, path.closed, self._colour, self._width * MM_PER_POINT, self._dash))
+    def draw_line(self, points: FloatArray, closed: bool) -> None:
+        """Draw a line (P, 2), mm on the page."""
+        width = self._width * MM_PER_POINT
+        self._strokes.append(PageStroke(np.array(points), closed, self._colour, width, self._dash))
 
     def line(self, *ends: float) -> None:
-        path = _Path()
-        path.points = [(ends[0], ends[1]), (ends[2], ends[3])]
-        self.drawPath(path)
+        self.draw_line(MM_PER_POINT * np.array(ends).reshape(2, 2), closed=False)
 
     def drawString(self, x: float, y: float, text: str) -> None:  # noqa: N802 - reportlab's name
         self._write(x, y, text, centred=False)

@@ -199,13 +199,13 @@ def outline_around(area: Polygon, kerf_mm: float, straight_mm: float = STRAIGHT_
 
 
 def _without_spikes(area: Polygon) -> Polygon:
-    """The area without corners at which a rim runs back along itself: that stretch would be cut twice."""
+    """The area without corners at which a rim runs back along itself."""
     rings = [_without_turning_back(shapely.get_coordinates(ring)[:-1]) for ring in (area.exterior, *area.interiors)]
     return Polygon(rings[0], rings[1:])
 
 
 def _without_turning_back(ring: FloatArray) -> FloatArray:
-    """The vertices (P, 2) of a ring without those where the nearer neighbour lies on the other one's side."""
+    """The vertices (P, 2) of a ring without those at which it runs back along itself."""
     while len(ring) > 3:
         before, after = np.roll(ring, 1, axis=0) - ring, np.roll(ring, -1, axis=0) - ring
         lengths = np.hypot(*before.T), np.hypot(*after.T)

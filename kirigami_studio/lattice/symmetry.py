@@ -179,12 +179,12 @@ def symmetry_of(sheet: Sheet) -> Symmetry | None:
 
 
 def nearly_symmetric(sheet: Sheet, off: float) -> Symmetry | None:
-    """The largest symmetry that a sheet has within ``off`` of its ratios (log10); None without any."""
+    """The largest symmetry of a sheet whose ratios may be ``off`` (log10); None without."""
     return next((symmetry for symmetry in MOST_FIRST if has_symmetry(sheet, symmetry, off)), None)
 
 
 def has_symmetry(sheet: Sheet, symmetry: Symmetry, off: float = SAME) -> bool:
-    """Whether a sheet has a symmetry, with its rim and start outline, and its ratios within ``off`` (log10)."""
+    """Whether a sheet with its rim and start has a symmetry; ratios may be ``off`` (log10)."""
     if not symmetry.fits(*sheet.grid):
         return False
     z, points = sheet.field.log10, anchor_points(sheet)

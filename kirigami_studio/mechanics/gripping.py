@@ -56,9 +56,10 @@ def find_grips(
 def grip_steps(
     deployment: Deployment, sheet: SheetNetwork, width_mm: float, end: float = CLOSED, steps: int = STEPS
 ) -> Generator[None, None, Gripping]:
-    """Find the fewest pins by which a sheet can be led along its ideal path; the most that are tried if none suffice.
+    """Find the fewest pins by which a sheet can be led along its ideal path; two if none suffice.
 
-    Yields after every step of every trial.
+    Yields after every step of every trial.  A sheet that no pins lead springs back where it is widest, by however many
+    it is held: two open it as far as that, and then its panels are turned on by hand.
 
     Parameters
     ----------
@@ -66,15 +67,17 @@ def grip_steps(
     """
     angles = np.linspace(math.pi, end, steps)
     order = SoftMotions.for_grips(deployment, sheet, width_mm).order(min(PINS[-1], sheet.network.panel_count))
+    first: Gripping | None = None
     for count in PINS:
         held, moved = tuple(order[:1]), tuple(order[1:count])
         yield
         found = yield from closing_steps(sheet, grips(deployment, sheet, width_mm, held, moved, end, steps))
         off = np.abs(found.phi - angles[: len(found.phi)])
         tried = Gripping(held, moved, found, len(found.phi) == steps and bool(np.all(off <= FOLLOWS)))
+        first = first or tried
         if tried.follows or count >= len(order):
             break
-    return tried
+    return tried if tried.follows else first or tried
 
 
 @dataclass(frozen=True, slots=True, eq=False)

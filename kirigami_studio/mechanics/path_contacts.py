@@ -133,7 +133,7 @@ class _ClosingPath:
         return math.pi - float(self._opening[first, at]) - MARGIN
 
     def _reach(self, panel: int, foot: complex, normal: complex) -> tuple[float, float]:
-        """How far (mm) the edge of a panel goes along its line to either side of a foot, and a connector's width."""
+        """How far (mm) an edge goes to either side of a foot, and a connector's width more."""
         rings = [_plane(shapely.get_coordinates(ring)) for ring in shapely.get_parts(self._rigid[panel].boundary)]
         ends = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
         ends = (ends - foot) * np.conj(normal)

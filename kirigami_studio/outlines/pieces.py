@@ -184,11 +184,10 @@ def lines_within(lines: Sequence[FloatArray], area: BaseGeometry) -> list[FloatA
     """Parts of lines (P, 2) in an area, in their order; a line that is all in it stays as it is."""
     if not lines:
         return []
-    strings = shapely.linestrings(
-        np.concatenate(lines), indices=np.repeat(np.arange(len(lines)), list(map(len, lines)))
-    )
+    numbers = np.repeat(np.arange(len(lines)), list(map(len, lines)))
+    strings = np.asarray(shapely.linestrings(np.concatenate(lines), indices=numbers), dtype=object)
     shapely.prepare(area)
-    whole = shapely.contains_properly(area, strings)
+    whole = np.asarray(shapely.contains_properly(area, strings))
     found: list[FloatArray] = []
     for line, string, is_whole in zip(lines, strings, whole.tolist(), strict=True):
         if is_whole:

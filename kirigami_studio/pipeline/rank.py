@@ -193,13 +193,25 @@ class Ranking:
             return []
         first = candidates[0]
         most = max(self.made_match(one) for one in candidates if (one.trim is None) is (first.trim is None))
-        return [self._why_first(first, most), *(self._why_later(one, first) for one in candidates[1:])]
+        why = self._why_filled(candidates) or self._why_first(first, most)
+        return [why, *(self._why_later(one, first) for one in candidates[1:])]
+
+    def _why_filled(self, candidates: Sequence[Candidate]) -> Note | None:
+        """Why a sheet with filled holes comes before trims with open ones; None where none does."""
+        if candidates[0].trim is not None or not self.cuttable(candidates[0]):
+            return None
+        why = next((self.refusals[one] for one in candidates if one in self.refusals and opens_holes(one)), None)
+        if why is None:
+            return None
+        place = {name: why.fields[name] for name in ("x", "y") if name in why.fields}
+        code = "rank.holes_filled_there" if len(place) == 2 else "rank.holes_filled"
+        return Note.of(code, why=why.text, **place)
 
     def _why_first(self, first: Candidate, most: float) -> Note:
         even = first.score.evenness
         if not self.cuttable(first):
             return self._why_not(first)
-        if first.trim is not None and first.trim.holes:
+        if first.trim is not None and opens_holes(first):
             return Note.of("rank.holes_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
         if first.trim is not None and first.trim.given_up:
             shares = {"match": 100 * first.match, "percent": 100 * first.given_up}
@@ -256,6 +268,11 @@ class Ranking:
             return self.pins_note(one)
         smallest_mm = one.score.evenness.least_feature_mm(self.width_mm)
         return Note.of("rank.too_thin", smallest_mm=smallest_mm, least_mm=self.least_feature_mm)
+
+
+def opens_holes(candidate: Candidate) -> bool:
+    """Whether a design is trimmed to a target with holes."""
+    return candidate.trim is not None and bool(candidate.trim.holes)
 
 
 def _seen_symmetry(candidate: Candidate) -> float:

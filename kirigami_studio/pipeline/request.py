@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from kirigami_studio import __version__
-from kirigami_studio.evaluate.trimming import KEEP, check_keep
+from kirigami_studio.evaluate.trimming import DEEP_KEEP, check_keep
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.settings import Setting, check
 from kirigami_studio.lattice.ratio_field import check_grid
@@ -49,7 +49,7 @@ class Request(DesignChoices):
         ).metadata,
     )
     #: unit cells, 0.02..0.4; depth of the material that trimming leaves at every hinge
-    keep: float = field(default=KEEP, kw_only=True)
+    keep: float = field(default=DEEP_KEEP, kw_only=True)
     #: Whether designs that cover the target may be made where no closed sheet shows it, see :attr:`may_cover`
     covers: bool = field(default=True, kw_only=True)
     #: > 0, optional; wall time after which the best so far are returned; the first batch is always scored

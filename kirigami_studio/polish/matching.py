@@ -133,7 +133,7 @@ def _nearest_on(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OneSided:
-    """How what sticks out of the target is weighed: of a layout that will be trimmed little, of horns more."""
+    """Weights of places outside the target: little before trimming, much at horns."""
 
     excess: float  #: 0..1; weight of what sticks out of the target, relative to what is missed
     vertices: BoolArray  #: (L,); outline vertices where sticking out costs beside that
@@ -150,7 +150,7 @@ class OneSided:
         return cls(1.0, np.ones_like(outer_hinges(rows, columns, phi)), TIP_SHARE)
 
     def weighed(self, matching: Matching, outline: FloatArray, target: BoundaryTarget) -> Matching:
-        """The same matches, those that stick out by their weight, and one more for every vertex that counts."""
+        """The same matches with these weights, and one more at each of the vertices."""
         normals = unit_normals(outline)
         out = np.einsum("rk,rk->r", matching.gap, normals[matching.edge]) > 0.0
         vertex = np.flatnonzero(self.vertices)

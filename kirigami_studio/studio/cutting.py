@@ -192,7 +192,7 @@ def room_mm(settings: FabricationSettings) -> float:
 
 
 def span_mm(settings: FabricationSettings) -> float:
-    """Width of a connector and of the cut, where connectors need room for their bows; 0 for others.
+    """Width of a connector and of the cut where connectors bow; 0 for others.
 
     Raises
     ------

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kirigami_studio.evaluate.candidate import Candidate, Family
+from kirigami_studio.evaluate.candidate import Candidate, Family, Origin
 from kirigami_studio.evaluate.posed_design import trimmed_parts
-from kirigami_studio.evaluate.trimming import HOLE_KEEP, KEEP
+from kirigami_studio.evaluate.trimming import DEEP_KEEP, KEEP
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.options import COPY_GAP_MM
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
@@ -444,7 +444,7 @@ def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: floa
     cut = hinge_layer(cut)
     widths = (cut.width_mm, cut.connector_mm, cut.kerf_mm)
     try:
-        least = least_keep(request.target)
+        least = least_keep(request.target, request.trim)
         return replace(request, keep=keep_for_connectors(request.uniform, material_for(cut), *widths, least))
     except FabricationError:
         if request.trims:
@@ -632,7 +632,7 @@ def sizes_of(settings: FabricationSettings) -> tuple[float, float]:
 
 
 def _span_of(settings: FabricationSettings) -> float:
-    """Width of a connector and of the cut that sheets leave room for; 0 without, and for an unknown material."""
+    """Width of a connector and of the cut that sheets leave room for; 0 without any."""
     try:
         return 0.0 if pin_gap_mm(settings) else span_mm(settings)
     except KirigamiError:
@@ -647,9 +647,12 @@ def gap_of(settings: FabricationSettings) -> float:
         return 0.0
 
 
-def least_keep(target: Outline) -> float:
-    """Depth (unit cells) of the material that stays at hinges of a trimmed sheet whatever its connectors are."""
-    return HOLE_KEEP if target.holes else KEEP
+def least_keep(target: Outline, edge: bool) -> float:
+    """Depth (unit cells) of the material that stays at hinges whatever the connectors are.
+
+    Less stays of a sheet with holes or notches than of one that is trimmed along its ``edge`` alone.
+    """
+    return KEEP if edge and not target.holes else DEEP_KEEP
 
 
 def keep_for(candidate: Candidate, target: Outline, settings: FabricationSettings) -> float:
@@ -658,4 +661,5 @@ def keep_for(candidate: Candidate, target: Outline, settings: FabricationSetting
 
     sheet, cut = candidate.sheet, hinge_layer(settings)
     widths = cut.width_mm, cut.connector_mm, cut.kerf_mm
-    return keep_for_connectors(sheet, material_for(cut), *widths, least_keep(target))
+    least = least_keep(target, candidate.origin is not Origin.COVERED)
+    return keep_for_connectors(sheet, material_for(cut), *widths, least)

@@ -86,6 +86,19 @@ def test_that_labels_never_overlap(bar: DeploymentBar) -> None:
             assert not any(a.intersects(b) for i, a in enumerate(boxes) for b in boxes[i + 1 :])
 
 
+@pytest.mark.parametrize("jam", [0.05, 0.2, 0.35, 1.0])
+def test_that_a_jam_near_the_target_hides_neither(bar: DeploymentBar, jam: float) -> None:
+    for width in (240, 320, 700):
+        bar.slider.set_marks(0.0, None)
+        bar.slider.set_jam(jam)
+        bar.slider.resize(width, 44)
+        told = {mark.kind: text for mark, _, text in bar.slider._placed_marks()}
+        assert told[MarkKind.JAM] and told[MarkKind.TARGET], width
+        boxes = [box for _, box, text in bar.slider._placed_marks() if text]
+        assert not any(a.intersects(b) for i, a in enumerate(boxes) for b in boxes[i + 1 :])
+    bar.slider.set_jam(None)
+
+
 @pytest.mark.parametrize("mode", list(PlayMode))
 @pytest.mark.parametrize("last", [0.0, 1.2])
 def test_that_every_mode_opens_from_flat_to_the_last_angle(mode: PlayMode, last: float) -> None:

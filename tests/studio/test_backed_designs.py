@@ -29,7 +29,7 @@ from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
-from kirigami_studio.mechanics.gripping import panels_to_pin
+from kirigami_studio.mechanics.gripping import find_grips, panels_to_pin
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import new_settings
@@ -174,6 +174,15 @@ def test_that_the_sheet_of_tiles_tells_where_to_hold_and_to_pull(
     names = {int(np.ravel_multi_index(piece.panel, (4, 4))): piece.id for piece in made.layers.assembly.pieces}
     told = PdfReader(written / "assembly.pdf").pages[0].extract_text()
     assert f"hold {names[first[0]]}, pull {names[first[1]]}" in told
+
+
+def test_that_two_grips_are_named_where_none_lead_the_sheet_all_the_way(square: Document, made: Planned) -> None:
+    request, width = CutRequest.of(square), square.fabrication.width_mm
+    lattice = made.plan.cut_from(request.deployment)
+    sheet = planned_sheet(lattice, made.plan, width)
+    found = find_grips(lattice, sheet, width, steps=9)
+    assert not found.follows
+    assert [*found.held, *found.moved] == panels_to_pin(lattice, sheet, width, 16)[:2]
 
 
 def test_that_the_template_has_true_size(written: Path, made: Planned) -> None:

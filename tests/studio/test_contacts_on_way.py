@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
+import pytest
 import shapely
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.steps import result_of
+from kirigami_studio.mechanics.bow_contacts import MARGIN
 from kirigami_studio.mechanics.closing import Closing, closing
+from kirigami_studio.mechanics.network import Stops
 from kirigami_studio.mechanics.path_contacts import contacts_on_way
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import with_choices
@@ -67,3 +72,27 @@ def test_that_a_sheet_whose_panels_pass_each_other_is_closed_once() -> None:
     assert simulated.as_cut.closes
     sheet = planned_sheet(plan.cut_from(request.deployment), plan, request.settings.width_mm)
     assert len(simulated.closing.sheet.network.stops) == len(sheet.network.stops)
+
+
+def test_that_a_corner_which_comes_round_the_end_of_an_edge_is_stopped_from_where_it_is_in_front_of_it() -> None:
+    edge = np.array([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)])
+    spike, third = np.array([(12.0, 20.0), (16.0, 18.0), (16.0, 22.0)]), edge + np.array([40.0, 0.0])
+    # Along the edge's line beyond its end, then before the edge, then into it.
+    shifts = [(0.0, 0.0)] * 3 + [(0.0, -12.0), (-1.5, -12.0), (-3.0, -12.0)]
+    motion = np.zeros((len(shifts), 3, 3))
+    motion[:, 1, :2] = shifts
+    opening = np.linspace(0.0, 0.9 * math.pi, len(shifts))
+    centroids = np.array([shapely.Polygon(panel).centroid.coords[0] for panel in (edge, spike, third)])
+    connectors = SimpleNamespace(
+        panels=np.array([[0, 2], [1, 2]]),
+        width_mm=np.full(2, 0.2),
+        longer_mm=np.zeros(2),
+        centres=np.full((2, 2, 2), 100.0),
+    )
+    network = SimpleNamespace(panel_count=3, numbers=None, centroids=centroids, stops=Stops.none())
+    sheet = SimpleNamespace(network=network, connectors=connectors, opening=lambda moved: np.stack([opening] * 2, 1))
+    found: Any = SimpleNamespace(sheet=sheet, path=SimpleNamespace(motion=motion), phi=math.pi - opening)
+    met = contacts_on_way([edge, spike, third], found, 0.02)
+    assert met.panels.tolist() == [[0, 1]]
+    assert met.normal[0] == pytest.approx([1.0, 0.0]) and met.point[0] == pytest.approx([12.01, 20.0], abs=0.05)
+    assert met.angle[0] == pytest.approx(math.pi - opening[3] - MARGIN)

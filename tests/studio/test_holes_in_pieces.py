@@ -19,7 +19,7 @@ from solid_reader import read_stl
 from kirigami_studio.assembly.cut_away import kept_voids, rim_loops
 from kirigami_studio.assembly.motion import LayerMotion, freedom
 from kirigami_studio.evaluate.candidate import Candidate, Origin
-from kirigami_studio.evaluate.kept_panels import PanelTable, all_panels
+from kirigami_studio.evaluate.kept_panels import all_panels
 from kirigami_studio.evaluate.notches import hinges_of
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.trimming import trim
@@ -97,8 +97,7 @@ def test_that_pieces_leave_the_holes_of_their_target_open_and_move_in_one_way(na
     assert report.figures.wall_mm > found.plan.options.asked_wall_mm - 0.03
     assert len(assembly.hinges) <= 36
     assert all(Polygon(piece.outline, piece.openings).is_valid for piece in assembly.pieces)
-    every, numbers = all_panels(4, 4), assembly.numbers
-    panels = PanelTable(numbers, every.corners[numbers], every.hinged[numbers], every.even[numbers])
+    panels = all_panels(4, 4).at(assembly.numbers, all_panels(4, 4).hinged)
     motion = LayerMotion.of(assembly.deployment, assembly.cell_mm, 0.0, panels=panels)
     pinned = np.isin(motion.nodes, [hinge.node for hinge in assembly.hinges])
     assert freedom(replace(motion, hinged=motion.hinged & pinned)) == 1
@@ -167,8 +166,7 @@ def test_that_rims_of_holes_are_loops_of_sides_that_border_no_void() -> None:
     voids, every = np.ones((6, 6), dtype=np.bool_), all_panels(6, 6)
     voids[1:3, 1:3] = voids[3:5, 4] = voids[0, 5] = False
     hinged = hinges_of(voids)
-    there = hinged.any(axis=1)
-    panels = PanelTable(every.index[there], every.corners[there], hinged[there], every.even[there])
+    panels = every.at(np.flatnonzero(hinged.any(axis=1)), hinged)
     assert np.array_equal(kept_voids(panels, (6, 6)), voids)
     design, loops, areas = deploy(RatioField(np.full((6, 6), 1.3))), rim_loops(panels), []
     for loop in loops:

@@ -29,12 +29,13 @@ CASES = Path(__file__).parents[1] / "data" / "making"
 
 @pytest.fixture(scope="module")
 def notched() -> Document:
-    """Two trimmed designs, of which only the second can be cut."""
-    return load(CASES / "notch_trimmed.kiri")
+    """Two trimmed designs, of which only the second can be cut with connectors of half a millimetre."""
+    document = load(CASES / "notch_trimmed.kiri")
+    return replace(document, fabrication=with_choices(document.fabrication, {"connector_mm": 0.5}))
 
 
 def test_that_what_a_trim_leaves_of_a_connector_is_listed_and_not_refused(notched: Document) -> None:
-    plan = plan_of(notched.candidates[1], notched.fabrication)
+    plan = plan_of(notched.candidates[0], with_choices(notched.fabrication, {"connector_mm": None}))
     hinges = plan.hinges
     short = np.flatnonzero(hinges.finished_mm < hinges.asked_mm - 1e-3)
     assert short.size and set(short.tolist()) <= set(hinges.narrowed.tolist())

@@ -304,6 +304,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Match once trimmed: {match:.1f} %. The sheet covers its holes; they are cut out of it with {count} panel.",
         "Match once trimmed: {match:.1f} %. The sheet covers its holes; they are cut out of it with {count} panels.",
     ),
+    "rank.holes_filled": mark("Its holes stay filled, as no design with open ones can be cut: {why}"),
+    "rank.holes_filled_there": mark(
+        "Its holes stay filled, as no design with open ones can be cut, for a reason near x = {x:.1f}, y = {y:.1f} mm: "
+        "{why}"
+    ),
     "rank.pins_too_near": mark("Pins come as near as {gap_mm:.1f} mm; their ears need {least_mm:.1f} mm."),
     "rank.thinner": mark("Its narrowest panel measures {own:.2f} mm, in the first design {first:.2f} mm."),
     "rank.too_thin": mark("Its narrowest panel measures {smallest_mm:.2f} mm; the material needs {least_mm:.2f} mm."),

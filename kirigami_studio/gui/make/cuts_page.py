@@ -109,8 +109,11 @@ class CutsPage(Card):
         if self._pieces is not None:
             pieces, beds = len(self._pieces.made.assembly.pieces), len(self._pieces.beds)
             if self._pieces.printing is not None:
-                return (tr("{pieces} pieces  ·  {plates} plates", pieces=pieces, plates=beds),)
-            return (tr("{pieces} pieces  ·  {beds} beds", pieces=pieces, beds=beds),)
+                one = tr_n(
+                    "{pieces} pieces  ·  {count} plate", "{pieces} pieces  ·  {count} plates", beds, pieces=pieces
+                )
+                return (one,)
+            return (tr_n("{pieces} pieces  ·  {count} bed", "{pieces} pieces  ·  {count} beds", beds, pieces=pieces),)
         if self._plan is None:
             return ()
         size, count, kerf_mm = readable_size(*self._plan.size_mm), len(self._plan.paths), self._plan.kerf_mm

@@ -208,7 +208,8 @@ class StartTile(QAbstractButton):
         painter.setPen(QColor(palette.muted))
         left = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         if lines:
-            painter.drawText(QRectF(9, 4, self.width() - BACK_EDGE - 9, LINE), left, tr("Start as"))
+            room = self.width() - 9 - (9 if self.back.isHidden() else BACK_EDGE)
+            painter.drawText(QRectF(9, 4, room, LINE), left, tr("Start as"))
         centred = int(Qt.AlignmentFlag.AlignCenter)
         texts, metrics = (self.name, self.size_text)[:lines], painter.fontMetrics()
         for number, text in enumerate(texts):

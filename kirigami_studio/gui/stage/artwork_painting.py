@@ -163,7 +163,7 @@ def painting_artwork(
 def painting_on_pieces(artwork: Artwork, printed: PrintedPieces, cancel: Cancel) -> Iterator[ShownPrint]:
     """Lay pictures on pieces; those with lines are engraved, and drawn with the pieces."""
     importing.import_exporters()
-    import shapely
+    from shapely import affinity
 
     from kirigami_studio.evaluate.boundary import as_points
     from kirigami_studio.export.artwork_patches import patches_of, rings_of
@@ -171,8 +171,8 @@ def painting_on_pieces(artwork: Artwork, printed: PrintedPieces, cancel: Cancel)
 
     assembly = printed.posed.assembly
     shifts = as_points(printed.origins)
-    regions = [shapely.transform(area, lambda points, at=at: points + at)
-               for area, at in zip(printed.areas, shifts, strict=True)]  # fmt: skip
+    placed = zip(printed.areas, shifts, strict=True)
+    regions = [affinity.translate(area, float(shift[0]), float(shift[1])) for area, shift in placed]
     images: dict[ArtPicture, tuple[QImage, float]] = {}
     found: dict[str, list[PiecePatch]] = {}
     for patch in patches_of(artwork, printed, regions):
@@ -183,8 +183,8 @@ def painting_on_pieces(artwork: Artwork, printed: PrintedPieces, cancel: Cancel)
             reduced = image_of(picture.content).copy()
             reduced.thumbnail((SHOWN_SIDE, SHOWN_SIDE))
             pixels = QImage(reduced.tobytes(), *reduced.size, 4 * reduced.width, QImage.Format.Format_RGBA8888)
-            own = pixels.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)  # its own copy of the pixels
-            images[picture] = own, picture.size[0] / reduced.width
+            kept = pixels.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)  # its own copy of the pixels
+            images[picture] = kept, picture.size[0] / reduced.width
         image, share = images[picture]
         own = patch.moved(1.0, -complex(printed.origins[patch.panel]))
         path = QPainterPath()

@@ -12,7 +12,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QMouseEvent, QPaintEngine, QPainter
 from PySide6.QtWidgets import QWidget
 
-from kirigami_studio.assembly.posed_pieces import PieceLook, PosedPieces
+from kirigami_studio.assembly.posed_pieces import LINE, PieceLook, PosedPieces, Shade, face_of, shaded
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.score import Score
 from kirigami_studio.evaluate.second_target import SecondMatch
@@ -44,7 +44,7 @@ from kirigami_studio.gui.stage.layout_labels import (
     room_in,
     smallest_parts,
 )
-from kirigami_studio.gui.stage.piece_items import paint_pieces
+from kirigami_studio.gui.stage.piece_items import colour_of, paint_pieces
 from kirigami_studio.gui.stage.void_gestures import VoidGestures
 from kirigami_studio.gui.stage.void_items import VoidShapes, steady
 from kirigami_studio.gui.widgets.canvas import Canvas
@@ -164,6 +164,7 @@ class LayoutView(Canvas):
         self.artwork: ShownArtwork | ShownPrint | None = None
         self._pieces: PosedPieces | None = None
         self._tiles: PosedPieces | None = None  #: on the panels of a hinge layer
+        self._cloth: Shade | None = None  #: face of that layer
         self._grips = GRIPS_UNKNOWN
         self.overstretched = 0  #: connectors of the last painted picture stretched by more than they tolerate
         self.areas: Mismatch | None = None  #: missing and extra area of the last painted picture
@@ -237,6 +238,7 @@ class LayoutView(Canvas):
         if layers is not None and self.design is not None:
             made, design = layers.assembly.deployment, self.design
             look = PieceLook.of(layers.material, layers.fastener, in_one_plane=False)
+            self._cloth = None if layers.glued is None else face_of(layers.glued.plan.material)
             posed = design if made is design.deployment else design.laid_over(made)
             self._tiles = PosedPieces(layers.assembly, posed, look, 0.0, ())
         self.update()
@@ -414,6 +416,9 @@ class LayoutView(Canvas):
         artwork = self._painted_artwork(painter)
         if artwork is not None:
             palette = replace(palette, panel_even=PAPER, panel_odd=PAPER, panel_line=palette.muted)
+        elif self._tiles is not None and self._cloth is not None:
+            face, line = (colour_of(one, palette).name() for one in (self._cloth, shaded(self._cloth, LINE)))
+            palette = replace(palette, panel_even=face, panel_odd=face, panel_line=line)
         turning = turning_left(field.rows, field.columns)
         if pose is None:
             paint_panels(painter, panels, turning, palette, trimmed)

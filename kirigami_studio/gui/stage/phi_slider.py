@@ -97,8 +97,8 @@ class PhiSlider(QSlider):
     def marks(self) -> tuple[TrackMark, ...]:
         """All marks, the most important first."""
         found = (
-            (MarkKind.JAM, self.jam, tr("{angle} jams")),
             (MarkKind.TARGET, self._target, tr("{angle} target")),
+            (MarkKind.JAM, self.jam, tr("{angle} jams")),
             (MarkKind.SECOND, self._second, tr("{angle} second")),
             (MarkKind.CONTACT, self._contact, tr("{angle} contact")),
             (MarkKind.FLAT, math.pi, tr("180° flat")),
@@ -231,15 +231,26 @@ class PhiSlider(QSlider):
             painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)
 
     def _placed_marks(self) -> list[tuple[TrackMark, QRectF, str]]:
-        """Marks with their label and its box; one that would run into a more important one is short or empty."""
+        """Marks with their label and its box; one that would run into a more important one makes way or is empty.
+
+        It is short where that helps, and else stands left of the other one.
+        """
         metrics = self.fontMetrics()
         roomy = self.width() >= ROOM_FOR_WORDS
         placed: list[tuple[TrackMark, QRectF, str]] = []
         for mark in self.marks():
-            for text in (mark.words, mark.short) if roomy else (mark.short,):
+            texts = (mark.words, mark.short) if roomy else (mark.short,)
+            beside = [other.left() - LABEL_GAP for _, other, text in placed if text]
+            for text, end in [(text, None) for text in texts] + [(text, end) for text in texts for end in beside]:
                 width = metrics.horizontalAdvance(text) + 2.0
                 left = min(max(self._x(mark.phi) - 0.5 * width, SIDE - HANDLE), self.width() - SIDE + HANDLE - width)
-                box = QRectF(left, MIDDLE + 13.0, width, 16.0)
+                if (
+                    end is not None and not 0.0 <= left + width - end <= 2.0 * width + LABEL_GAP
+                ):  # too far from its mark
+                    continue
+                box = QRectF(left if end is None else end - width, MIDDLE + 13.0, width, 16.0)
+                if box.left() < 0.0:
+                    continue
                 wide = box.adjusted(-LABEL_GAP, 0.0, LABEL_GAP, 0.0)
                 if not any(wide.intersects(other) for _, other, _ in placed):
                     placed.append((mark, box, text))

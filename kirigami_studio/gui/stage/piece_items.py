@@ -105,8 +105,8 @@ def paint_pieces(
                 painter.drawPath(to_pixels[number].map(drawn[number]))
     heads = transform.to_pixels(pieces.heads(phi))
     if len(heads):
-        places = [QPointF(x, y) for x, y in heads.tolist()]
-        _paint_heads(painter, places, 0.5 * pieces.head_mm * per_mm, fall, pieces.look.head, palette)
+        middles = [QPointF(x, y) for x, y in heads.tolist()]
+        _paint_heads(painter, middles, 0.5 * pieces.head_mm * per_mm, fall, pieces.look.head, palette)
     _paint_holds(painter, pieces, phi, transform, palette)
 
 

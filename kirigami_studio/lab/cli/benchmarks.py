@@ -450,6 +450,7 @@ def grpo(arguments: argparse.Namespace) -> int:
 
 def designs(arguments: argparse.Namespace) -> int:
     """The whole program on targets, shape by shape, with pictures where asked for."""
+    from kirigami_studio.evaluate.trimming import DEEP_KEEP, KEEP
     from kirigami_studio.lab.benchmark.design_suite import design_figures, make_designs, worst_of, write_contact_sheet
     from kirigami_studio.pipeline.request import Request
     from kirigami_studio.settings.design import with_balance
@@ -471,6 +472,7 @@ def designs(arguments: argparse.Namespace) -> int:
                     prefer=arguments.prefer,
                     search=arguments.effort,
                     trim=arguments.trim,
+                    keep=KEEP if arguments.trim else DEEP_KEEP,
                     symmetry=arguments.symmetry,
                     rim=arguments.rim,
                     regular=regular,

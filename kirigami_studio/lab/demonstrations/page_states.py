@@ -1,4 +1,4 @@
-"""A screenshot of the three pages when empty, done, busy, refused and with long names, in both themes, for review.
+"""Screenshots of the three pages: empty, at first, done, with long names, refused, busy.
 
 ``python -m kirigami_studio.lab.demonstrations.page_states --out out/pages --language de`` writes them at 1280 x 720,
 with a page of small ones for each theme; with ``--scale 2`` at 3840 x 2160.

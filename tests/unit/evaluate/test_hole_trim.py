@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
+import shapely.affinity
 from shapely.geometry import Point, Polygon, box
 
+from kirigami_studio.evaluate.kept_panels import all_panels
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import iou_of_area, siou_of_many
@@ -109,3 +111,33 @@ def test_that_an_area_is_scored_with_openings_in_holes_of_its_target_alone() -> 
 
 def test_that_a_hole_does_not_make_a_shape_turn_back() -> None:
     assert turn_back(frame(0.2)).angle == turn_back(frame(0.2).filled).angle
+
+
+def test_that_an_area_with_holes_is_scored_at_the_turn_at_which_these_match() -> None:
+    disc = Point(0.0, 0.0).buffer(0.5642, quad_segs=64)
+    eye = shapely.get_coordinates(Point(0.0, 0.3).buffer(0.12).exterior)[:-1]
+    target = Outline.from_points(shapely.get_coordinates(disc.exterior)[:-1], holes=[eye])
+    shown = shapely.affinity.rotate(target.polygon, 171.0, origin=(0.0, 0.0))
+    assert iou_of_area(shown, target) > 0.99
+
+
+def test_that_no_rim_runs_into_a_slit_near_a_connector_that_rests_on_it_from_beyond() -> None:
+    uneven = deploy(RatioField.from_log10(0.2 * np.random.default_rng(3).normal(size=GRID)))
+    target, keep = frame(0.22), 0.1
+    (match,) = siou_of_many([uneven.outline(0.0)], target.filled)
+    made, table = trim(uneven, target, 0.0, match.transform, keep), all_panels(*GRID)
+    places, there = uneven.compact, np.zeros(uneven.topology.node_count, dtype=np.intp)
+    parts = [Polygon(places[table.corners[k]] if part is None else part) for k, part in enumerate(made.kept)]
+    for k, part in enumerate(parts):
+        reached = [not part.is_empty and part.distance(Point(places[node])) < 0.02 for node in table.corners[k]]
+        np.add.at(there, table.corners[k][reached], 1)
+    tried = 0
+    for k in np.flatnonzero([part is not None and len(part) > 0 for part in made.kept]):
+        side = Polygon(places[table.corners[k]]).exterior
+        for guest in table.guests[k][table.guests[k] >= 0]:
+            near = side.intersection(Point(places[guest]).buffer(0.95 * keep))
+            if there[guest] == 2 and near.length > 0.0:
+                covered = near.intersection(parts[k].buffer(1e-6)).length / near.length
+                assert covered < 0.02 or covered > 0.98
+                tried += 1
+    assert tried > 10

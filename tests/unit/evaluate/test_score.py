@@ -16,8 +16,10 @@ from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines import silhouettes
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.polish.levenberg import polish
 
 
 def random_deployment(seed: int, phi_spread: float = 1.0) -> Deployment:
@@ -41,6 +43,16 @@ def test_that_the_transform_lays_the_layout_over_the_target() -> None:
     laid = score.transform.apply(sheet.outline(0.0))
     assert score.transform.scale**2 * sheet.area(0.0) == pytest.approx(1.0, abs=0.25)
     assert np.abs(laid.mean(axis=0)).max() < 0.3
+
+
+def test_that_of_equal_axes_of_a_target_a_symmetric_design_has_the_upright_one() -> None:
+    target = silhouettes.load("star")
+    for symmetry, lies in ((Symmetry.LEFT_RIGHT, 0.0), (Symmetry.TOP_BOTTOM, 0.5 * math.pi)):
+        pose = Similarity(1.0 / 8.0, lies)
+        for steps in (3, 5, 7):
+            fit = polish(Sheet.uniform(7, 7), target, steps=steps, pose=pose, symmetry=symmetry)
+            score = evaluate(deploy(fit.sheet), target)
+            assert math.remainder(score.transform.angle - lies, math.pi) == pytest.approx(0.0, abs=0.05)
 
 
 @pytest.mark.parametrize(("seed", "name", "phi"), [(1, "heart", 0.0), (2, "star", 0.7), (5, "hexagon", 0.0)])

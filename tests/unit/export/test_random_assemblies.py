@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from piece_reader import put_together
-from random_assemblies import faults, random_job
+from random_assemblies import BOUNDS, faults, random_job
+
+from kirigami_studio.export.assembly_files import write_assembly
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
@@ -39,3 +43,14 @@ def test_that_the_other_reader_finds_pieces_that_collide(tmp_path: Path) -> None
     motion.write_text(json.dumps(record))
     read = put_together(tmp_path / "out", ".dxf", job.allowed_mm)
     assert read.overlap_mm2 > 10.0 and read.pins_mm > 1.0
+
+
+def test_that_the_other_reader_knows_openings_in_pieces(tmp_path: Path) -> None:
+    """Random pinned designs 19 and 59 have such pieces."""
+    job = random_job(0, 2)
+    first, *others = job.assembly.pieces
+    window = np.array([[-1.5, -1.5], [-1.5, 1.5], [1.5, 1.5], [1.5, -1.5]])
+    assembly = replace(job.assembly, pieces=(replace(first, openings=(window,)), *others))
+    write_assembly(replace(job, assembly=assembly), tmp_path / "out")
+    read = put_together(tmp_path / "out", ".svg", job.allowed_mm)
+    assert read.pieces == len(assembly.pieces) and read.outline_mm <= BOUNDS.outline_mm

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 import shapely
 from cut_sheets import bitten, mouths
-from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry import LineString, Point, Polygon, box
 
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer, plan_cuts
+from kirigami_studio.fabricate.finished_sheet import overlap_length
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.fabricate.trimmed_sheet import kept_area, needed_keep, outline_around
@@ -143,3 +144,13 @@ def test_that_the_needed_depth_grows_with_connector_and_kerf_and_falls_with_the_
     assert needed_keep(design, 160.0, 1.0, 0.1) > 1.1 / 20.0
     assert needed_keep(design, 160.0, 1.0, 0.1) < 1.2 / 20.0
     assert needed_keep(design, 320.0, 1.0, 0.1) == pytest.approx(0.5 * needed_keep(design, 160.0, 1.0, 0.1))
+
+
+def test_that_no_rim_runs_back_along_itself() -> None:
+    """A corner of a hole of a trimmed "8", 36 um wide, which was cut twice for 15 um."""
+    corner = [(61.45049, 159.61312), (61.404166, 159.616757), (61.441838, 159.634733)]
+    hole = [*corner, (62.5, 159.553043), (62.5, 159.0), (61.702425, 159.0)]
+    outline = outline_around(box(50.0, 150.0, 75.0, 170.0) - Polygon(hole), 0.02)
+    assert len(outline.interiors) == 1
+    assert overlap_length([outline.exterior, *outline.interiors]) == pytest.approx(0.0, abs=1e-9)
+    assert outline.area == pytest.approx(25.0 * 20.0 - Polygon(hole).area, abs=1.0)

@@ -12,7 +12,8 @@ from kirigami_studio.evaluate.candidate import Candidate, Family
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.evaluate.second_target import SecondMatch, SecondTarget
 from kirigami_studio.evaluate.siou import ShapeMatch
-from kirigami_studio.evaluate.trimming import trim
+from kirigami_studio.evaluate.trimming import TrimmedHole, trim
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -150,6 +151,22 @@ def test_that_one_price_ranks_whole_sheets_and_covers_and_follows_the_slider(des
 def test_that_reasons_name_what_is_given_up(design: Candidate) -> None:
     whole, cover = with_figures(design, 0.98), with_cover(design, 0.985, 0.3)
     assert [note.code for note in USUAL.reasons([whole, cover])][1] == "rank.gives_up"
+
+
+@pytest.mark.parametrize("fields", [{}, {"x": 1.0, "y": 2.0}])
+def test_that_filled_holes_that_come_first_have_a_reason_and_a_place(
+    design: Candidate, fields: dict[str, object]
+) -> None:
+    filled, opened = with_figures(design, 0.82), with_cover(design, 0.99, 0.1)
+    assert opened.trim is not None
+    hole = TrimmedHole(0.9, 2.0, (0.0, 0.0))
+    opened = replace(opened, trim=replace(opened.trim, holes=(hole,)))
+    why = Note("plan.no_room_made_in_trimmed", fields)
+    ranking = replace(USUAL, trimmed_first=True, refusals={opened: why})
+    first, later = ranking.reasons(ranking.ranked([opened, filled]))
+    assert later == why and why.text in first.text
+    assert first.code == ("rank.holes_filled_there" if fields else "rank.holes_filled")
+    assert ranking.ranked([opened, filled])[0] == filled
 
 
 def test_that_what_can_be_cut_comes_first(design: Candidate) -> None:
