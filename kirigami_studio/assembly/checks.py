@@ -115,14 +115,14 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
     panels = shapely.area(shapely.polygons(corners * assembly.cell_mm))
     kept = shapely.area(bodies) / panels
     apart, pair = pins_apart(assembly.deployment, [hinge.node for hinge in assembly.hinges], assembly.cell_mm, phi)
-    shown, flat_shown = silhouette(opened, plan.opened), silhouette(flat)
+    seen, flat_seen = filled(opened, plan.opened), silhouette(flat)
     figures = PinnedFigures(
-        match=iou(shown, plan.opened),
-        flat_match=iou(flat_shown, plan.flat),
+        match=iou(seen, plan.opened),
+        flat_match=iou(flat_seen, plan.flat),
         covered=float(plan.opened.intersection(opened).area / plan.opened.area),
         flat_covered=float(plan.flat.intersection(flat).area / plan.flat.area),
-        lost_flat=float(plan.flat.difference(flat_shown).area / plan.flat.area),
-        beyond_flat=float(flat_shown.difference(plan.flat).area / plan.flat.area),
+        lost_flat=float(plan.flat.difference(flat_seen).area / plan.flat.area),
+        beyond_flat=float(flat_seen.difference(plan.flat).area / plan.flat.area),
         gap_mm=plan.gap_mm,
         pins_apart_mm=apart,
         wall_mm=min(walls),
@@ -137,9 +137,8 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
     }
     problems = _broken(plan, places)
     ear = 0.25 * math.pi * (options.ear_mm / assembly.cell_mm) ** 2
-    problems += closed_holes(
-        shown_holes(plan, bodies, shown), np.zeros(2), assembly.cell_mm, "pinned.hole_too_small", ear
-    )
+    shown = shown_holes(plan, bodies, seen)
+    problems += closed_holes(shown, np.zeros(2), assembly.cell_mm, "pinned.hole_too_small", ear)
     needed = options.ear_mm + options.clearance_mm
     if plan.gap_mm < needed - ROUNDNESS_MM:
         problems.append(
@@ -173,7 +172,7 @@ def check_pinned(plan: PinnedPlan, angles: int = ANGLES) -> PinnedReport:
             )
         )
     if figures.match < LEAST_MATCH:
-        missing, beyond = plan.opened.difference(shown).area, shown.difference(plan.opened).area
+        missing, beyond = plan.opened.difference(seen).area, seen.difference(plan.opened).area
         problems.append(
             Problem.warning(
                 "pinned.target_missed",
@@ -318,7 +317,17 @@ def pins_apart(deployment: Deployment, nodes: Sequence[int], cell_mm: float, phi
     return math.sqrt(max(float(least[nearest]), 0.0)), pair
 
 
-def shown_holes(plan: PinnedPlan, bodies: Sequence[BaseGeometry], shown: BaseGeometry) -> tuple[TrimmedHole, ...]:
+def filled(shape: BaseGeometry, target: Polygon) -> BaseGeometry:
+    """The shape without openings, but for those at holes of a target: silhouettes are compared like this."""
+    whole = silhouette(shape)
+    if not target.interiors:
+        return whole
+    rings = np.array([Polygon(ring) for part in shapely.get_parts(shape) for ring in part.interiors], dtype=object)
+    holes = shapely.union_all([Polygon(ring) for ring in target.interiors])
+    return shapely.difference(whole, shapely.union_all(rings[shapely.intersects(rings, holes)]))
+
+
+def shown_holes(plan: PinnedPlan, bodies: Sequence[BaseGeometry], silhouette: BaseGeometry) -> tuple[TrimmedHole, ...]:
     """How the pieces leave the holes of their target open."""
     assembly = plan.assembly
     placed = placed_bodies(assembly, bodies, assembly.phi_target)
@@ -327,7 +336,7 @@ def shown_holes(plan: PinnedPlan, bodies: Sequence[BaseGeometry], shown: BaseGeo
     for ring in plan.opened.interiors:
         hole = Polygon(ring)
         x, y = places[int(np.argmax(shapely.area(shapely.intersection(placed, hole))))].tolist()
-        covered = hole.intersection(shown).area / hole.area
+        covered = hole.intersection(silhouette).area / hole.area
         found.append(TrimmedHole(1.0 - covered, hole.area / assembly.cell_mm**2, (x, y)))
     return tuple(found)
 

@@ -106,9 +106,9 @@ def pinned(
     panels = panels_left(design, shown, cell_mm, options)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
     with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
-        needless = () if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
-        in_holes = pins_in_holes(deployment, panels, phi, shown, cell_mm)
-        shaping = Shaping.of(deployment, cell_mm, phi, options, panels, in_holes, needless)
+        unwanted = pins_in_holes(deployment, panels, phi, shown, cell_mm)
+        needless = [] if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
+        shaping = Shaping.of(deployment, cell_mm, phi, options, panels, unwanted, needless)
         if only_whole and shaping.broken:
             first = piece_names(shaping.motion)[min(shaping.broken)]
             raise FabricationError("pinned.falls_apart", piece=first, count=len(shaping.broken))
@@ -122,7 +122,7 @@ def pinned(
         extend_to(shaping, opened, closed, 0.0)
         extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
         if options.weight > 0.5:
-            extend_to(shaping, opened, closed, MOST_BEYOND * max(0.0, spare - closed.missing(shaping)))
+            extend_to(shaping, opened, closed, MOST_BEYOND * (spare - closed.missing(shaping)))
         round_off(shaping, (opened, closed))
         if shown.interiors:  # necks that lead through holes may be joined by what was added
             trim_to(shaping, opened, closed, 0.0)

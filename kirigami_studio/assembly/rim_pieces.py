@@ -91,14 +91,9 @@ class EndState:
         return float(less(self.outline, silhouette(united(*shaping.placed(self.turn)))).area)
 
 
-def silhouette(shape: BaseGeometry, target: Polygon | None = None) -> BaseGeometry:
-    """The shape without openings, but for those at holes of a target: silhouettes are compared like this."""
-    whole = shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(shape)])
-    if target is None or not target.interiors:
-        return whole
-    rings = np.array([Polygon(ring) for part in shapely.get_parts(shape) for ring in part.interiors], dtype=object)
-    holes = shapely.union_all([Polygon(ring) for ring in target.interiors])
-    return shapely.difference(whole, shapely.union_all(rings[shapely.intersects(rings, holes)]))
+def silhouette(shape: BaseGeometry) -> BaseGeometry:
+    """The shape with its holes filled."""
+    return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(shape)])
 
 
 def _rim_shares(nodes: ComplexArray, panels: PanelTable, reach_mm: float) -> GeometryArray:
@@ -156,8 +151,8 @@ def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) ->
     other : EndState
         The other end, where what is cut off is missing.
     spare : float, mm2
-        How much the silhouette there may lose; gaps inside of it count less, see :data:`GAPS`.  What is cut along the
-        rim of a hole does not count, for the flat sheet is open there, too.
+        How much the silhouette there may lose; gaps inside of it count less, see :data:`GAPS`, and what is cut along
+        the rim of a hole not at all, for the flat sheet is open there, too.
     """
     holes = np.array([shapely.union_all([Polygon(ring) for ring in state.outline.interiors])], dtype=object)
     motion, keep = shaping.motion, shaping.options.keep_mm
@@ -172,9 +167,9 @@ def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) ->
         walls = shapely.union_all(discs(motion.corners[index][motion.hinged[index]], keep))
         hole = motion.brought_back(holes, here, state.turn)[0]
         in_hole = shared(body, hole).area > LEAST_PART
+        counts = less(body, hole) if in_hole else body
         for one in _cut(shaping, index, mine, united(shared(body, mine), shared(body, walls)), in_hole):
-            cut = less(body, one)
-            if shown is None or shown.gives(index, cut, less(cut, hole) if in_hole else cut, spare):
+            if shown is None or shown.gives(index, less(counts, one), spare):
                 shaping.bodies[index] = one
                 break
 
@@ -198,16 +193,16 @@ class _Shown:
         self._missed = self._missing(self._whole)
         self.lost = self.bare = 0.0
 
-    def gives(self, index: int, cut: BaseGeometry, counted: BaseGeometry, spare: float) -> bool:
-        """Cut an area (flat sheet) off a piece if the silhouette can spare what counts of it; whether it was cut."""
-        areas = np.array([cut, counted], dtype=object)
-        whole_cut, placed = self._shaping.motion.placed(areas, np.array([index, index]), self._state.turn)
+    def gives(self, index: int, cut: BaseGeometry, spare: float) -> bool:
+        """Cut an area (flat sheet) off a piece if the silhouette can spare it; whether it was cut."""
+        here = np.array([index])
+        placed = self._shaping.motion.placed(np.array([cut], dtype=object), here, self._state.turn)[0]
         beside = self._near.query(placed, predicate="intersects")
         bare = less(placed, united(*self._placed[beside[beside != index]]))
-        if self.bare + bare.area > GAPS * spare:
-            return False
         whole, missed = self._whole, self._missed
         if bare.area >= LEAST_PART:
+            if self.bare + bare.area > GAPS * spare:
+                return False
             whole = less(whole, bare)
             missed = self._missing(whole)
         if missed - self._missed > spare - self.lost:
@@ -215,7 +210,7 @@ class _Shown:
         self.lost += missed - self._missed
         self.bare += bare.area
         self._whole, self._missed = whole, missed
-        self._placed[index] = less(self._placed[index], whole_cut)
+        self._placed[index] = less(self._placed[index], placed)
         return True
 
     def _missing(self, whole: BaseGeometry) -> float:
@@ -241,15 +236,15 @@ def _cut(
     """
     motion, body = shaping.motion, shaping.bodies[index]
     whole = shaping.held_together(index, wanted)
+    linked = whole is None
     pins, half = as_points(motion.corners[index][motion.hinged[index]]), 0.5 * float(shaping.neck_mm[index])
-    hangs = whole is not None
     # In a hole they are nowhere hidden: as near to its rim as there is a way.
     for beyond in (*BEYOND_MM, math.inf) if to_necks else (math.inf,):
         if whole is None:
             room = body if beyond == math.inf else shared(body, united(wanted, mine.buffer(beyond)))
             links = shortest_links(room, pins, mine, half)
             whole = shaping.held_together(index, united(wanted, shared(body, links)))
-    if whole is not None and (hangs or to_necks or whole.area >= LEAST_KEPT * body.area):
+    if whole is not None and (to_necks or not linked or whole.area >= LEAST_KEPT * body.area):
         yield whole
     for beyond in BEYOND_MM:
         whole = shaping.held_together(index, united(wanted, shared(body, mine.buffer(beyond))))

@@ -176,7 +176,6 @@ def request_for(
     KirigamiError
         The settings do not go together.
     """
-    gap_mm = pin_gap_mm(cut)
     return Request.of(
         target,
         wanted,
@@ -186,8 +185,8 @@ def request_for(
         least_feature_mm=max(least_feature_mm(cut), least_panel_mm),
         room_mm=sizes_of(cut)[1],
         span_mm=_span_of(cut),
-        least_gap_mm=gap_mm,
-        upright=gap_mm > 0.0 and not is_printed(cut),
+        least_gap_mm=pin_gap_mm(cut),
+        upright=pin_gap_mm(cut) > 0.0 and not is_printed(cut),
     )
 
 

@@ -308,7 +308,7 @@ def test_that_pins_without_a_wall_go_before_needless_ones() -> None:
     nodes = np.unique(motion.nodes[motion.hinged])
     weak = set(nodes.tolist()) - set(_pins_of(Shaping.of(deployment, cell_mm, phi, BRADS)).tolist())
     needless = [int(node) for node in nodes if node not in weak]
-    made = Shaping.of(deployment, cell_mm, phi, BRADS, needless)
+    made = Shaping.of(deployment, cell_mm, phi, BRADS, needless=needless)
     assert made.faults == 0 and len(weak) == 1 and not weak & set(_pins_of(made).tolist())
     assert len(_pins_of(made)) < len(nodes) - 1 and freedom(made.motion) == 1
 
