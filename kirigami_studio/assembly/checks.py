@@ -318,7 +318,7 @@ def pins_apart(deployment: Deployment, nodes: Sequence[int], cell_mm: float, phi
 
 
 def filled(shape: BaseGeometry, target: Polygon) -> BaseGeometry:
-    """The shape without openings, but for those at holes of a target: silhouettes are compared like this."""
+    """Fill the openings of a shape, but for those at holes of the target."""
     whole = silhouette(shape)
     if not target.interiors:
         return whole

@@ -1,4 +1,4 @@
-"""Panels of pinned designs that are cut away: those in holes of the target, and those that a deep trim gave up.
+"""Panels of pinned designs that are cut away, in holes or by a deep trim.
 
 What stays are voids that hang together from hinge to hinge, each with its four panels and pins, so that the pieces keep
 their one motion (:mod:`kirigami_studio.evaluate.notches`).  Pieces may be extended to the rim of a hole but not cut to
@@ -78,7 +78,7 @@ def kept_voids(panels: PanelTable, grid: tuple[int, int]) -> BoolArray:
 
 
 def rim_loops(panels: PanelTable) -> list[IntArray]:
-    """Sides of panels along the outline of the sheet, and along every place where panels are cut away.
+    """Sides of panels along the sheet's outline, and around places that are cut away.
 
     Returns
     -------
@@ -149,7 +149,7 @@ class _OpenHoles:
         self._known: dict[tuple[int, bytes], tuple[BaseGeometry, float]] = {}
 
     def _orbits_of(self, images: IntArray | None) -> IntArray:
-        """Each void with its images (m n, G + 1), if the holes have the sheet's symmetry; else alone."""
+        """Voids with their images (m n, G + 1), if the holes have the sheet's symmetry."""
         alone, share = np.arange(self._share.size)[:, None], self._share.ravel()
         if images is None or np.abs(share[images] - share).max() > ALIKE:
             return alone

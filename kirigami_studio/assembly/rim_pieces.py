@@ -76,7 +76,7 @@ class EndState:
         outline: Polygon,
         reach_mm: float,
     ) -> EndState:
-        """The state of some panels of a design at ``phi``; where others are cut away the flat sheet is open."""
+        """State of some panels of a design at ``phi``; without the others the flat sheet is open."""
         nodes = as_plane(deployment.nodes(phi)) * cell_mm
         voids = deployment.topology.void_nodes[kept_voids(panels, deployment.sheet.grid)]
         openings = polygons(nodes[voids])
@@ -97,7 +97,7 @@ def silhouette(shape: BaseGeometry) -> BaseGeometry:
 
 
 def _rim_shares(nodes: ComplexArray, panels: PanelTable, reach_mm: float) -> GeometryArray:
-    """Panels at rims, those of holes too, with the strip outside of each, between bisectors of the rim's angles."""
+    """Panels at rims, each with the strip outside of it between bisectors of the rim's angles."""
     shares = np.full(len(panels.index), Polygon(), dtype=object)
     for loop in rim_loops(panels):
         owner, corner = loop.T
@@ -120,7 +120,7 @@ def _add_shares(
     start: ComplexArray,
     end: ComplexArray,
 ) -> None:
-    """Add to the shares of panels those at one rim, whose sides (L,) run from ``start`` to ``end``."""
+    """Add the shares of panels at one rim, whose sides (L,) run from ``start`` to ``end``."""
     first = int(np.argmax(owner != np.roll(owner, 1)))
     owner, start, end = np.roll(owner, -first), np.roll(start, -first), np.roll(end, -first)
     breaks = np.flatnonzero(owner != np.roll(owner, 1))

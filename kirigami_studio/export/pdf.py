@@ -72,7 +72,7 @@ def write_pdf(plan: CutPlan, path: str | Path, paper: str = Paper.NONE) -> None:
 
 
 def pages_of(size: tuple[float, float], paper: str) -> Tiling:
-    """Lay a drawing (width, height; mm) over pages of a paper, or for "none" on one page as large as it.
+    """Lay a drawing (width, height; mm) over pages of a paper, or on one page for "none".
 
     Raises
     ------
