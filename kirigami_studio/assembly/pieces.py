@@ -156,7 +156,7 @@ class Assembly:
         return np.column_stack([origins, turns])
 
     def placing(self, phi: float) -> Callable[[Piece, FloatArray], FloatArray]:
-        """What carries points (..., 2) of a piece's frame to their places at ``phi``, mm."""
+        """Return the function that carries points (..., 2) of pieces to places at ``phi``, mm."""
         poses = dict(zip(self.pieces, self.poses(phi).tolist(), strict=True))
 
         def placed(piece: Piece, points: FloatArray) -> FloatArray:

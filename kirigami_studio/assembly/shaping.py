@@ -537,7 +537,7 @@ class _ConvexParts:
 
 
 def _covered_by_convex(shapes: GeometryArray) -> GeometryArray:
-    """Convex polygons that cover small shapes: coarse hulls, or triangles of shapes that are far from convex."""
+    """Convex polygons that cover small shapes: coarse hulls, or triangles."""
     hulls = shapely.convex_hull(shapes)
     compact = shapely.area(hulls) < 1.25 * shapely.area(shapes)
     grown = shapely.buffer(np.where(compact, hulls, shapes), COARSE, join_style="mitre")

@@ -187,7 +187,7 @@ def _top(circle: Stroke) -> float:
 
 
 def total_length(strokes: Sequence[Stroke]) -> float:
-    """Length of strokes together, mm, arcs as arcs; one by one, many short ones take ten times as long."""
+    """Length of strokes together, mm, arcs as arcs, measured at once."""
     circles = np.array([stroke.points for stroke in strokes if stroke.circle]).reshape(-1, 2, 2)
     lines = [stroke.travelled() for stroke in strokes if stroke.bulges is None]
     steps = np.hypot(*np.diff(np.concatenate([np.zeros((1, 2)), *lines]), axis=0).T)
