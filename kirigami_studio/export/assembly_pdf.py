@@ -202,7 +202,7 @@ def _one_page(size: Size) -> Tiling:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Shape:
-    """A piece in a picture, mm: rings, the outer one first and coarse, number, place, lines of artwork."""
+    """A piece in a picture, mm: rings, the coarse outer one first, number, place, artwork."""
 
     layer: int
     rings: tuple[FloatArray, ...]

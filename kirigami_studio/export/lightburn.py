@@ -408,7 +408,7 @@ def _circle_curves(shape: ElementTree.Element) -> list[Curve]:
 
 
 def _length(curves: FloatArray) -> float:
-    """Length (mm) of cubic Bezier curves (C, 4, 2), each measured along its chords; straight ones have one."""
+    """Length (mm) of cubic Bezier curves (C, 4, 2), along chords; straight ones have one."""
     bent = np.any(curves[:, 1] != curves[:, 0], axis=1) | np.any(curves[:, 2] != curves[:, 3], axis=1)
     straight = np.linalg.norm(curves[~bent, 3] - curves[~bent, 0], axis=1).sum()
     return float(straight + np.linalg.norm(np.diff(_weights(CHORDS), axis=0) @ curves[bent], axis=2).sum())
