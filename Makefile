@@ -180,7 +180,7 @@ pairs: setup
 	$(BIN)/python packaging/make_pairs.py
 
 #: Designs in plywood for their picture.
-PLYWOOD := --material plywood-co2 --k 6 --out out/plywood
+PLYWOOD := --material plywood-co2 --width-mm 300 --grid auto --k 8 --out out/plywood
 pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.offscreen_session --out out/pictures
 	cp out/pictures/4-designs.png docs/pictures/window.png
@@ -195,9 +195,9 @@ pictures: setup
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.offscreen_session --pairs --scale 2 --language de --out out/pictures/de
 	cp out/pictures/de/pairs-small.png resources/guide/de/pairs.png
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.tutorial_pictures --out docs/pictures/tutorials
-	$(BIN)/kirigami-studio design heart --grid 6x7 $(PLYWOOD)/1-heart
-	$(BIN)/kirigami-studio design star --grid 8x8 $(PLYWOOD)/2-star
-	$(BIN)/kirigami-studio design square --start circle --grid auto $(PLYWOOD)/3-disk
+	$(BIN)/kirigami-studio design heart $(PLYWOOD)/1-heart
+	$(BIN)/kirigami-studio design star $(PLYWOOD)/2-star
+	$(BIN)/kirigami-studio design square --start circle $(PLYWOOD)/3-disk
 	$(BIN)/python -m kirigami_studio.lab.demonstrations.assembled_pieces out/plywood/*/design.kiri --out docs/pictures/plywood.png
 	$(BIN)/python -m kirigami_studio.lab.demonstrations.printed_states resources/pairs/02-circle-to-square.kiri \
 	  $$($(BIN)/python -c "import pathlib, skimage.data as d; print(pathlib.Path(d.__file__).parent / 'coffee.png')") \
