@@ -192,12 +192,10 @@ def covered(
     """
     area: BaseGeometry = shapely.Polygon(sheet)
     if not area.is_valid:
-        area = shapely.make_valid(area)
+        area = _without_lines(shapely.make_valid(area))
     if not removed:
         return area
     off = shapely.union_all(polygons_of(removed), grid_size=GRID)
-    parts = shapely.get_parts(area)  # of a sheet that touches itself lines may be left over
-    area = shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
     area = shapely.difference(area, off, grid_size=GRID)
     if voids is not None:
         openings = np.asarray(shapely.polygons(voids), dtype=np.object_)
@@ -206,7 +204,13 @@ def covered(
         beside = shapely.area(shapely.intersection(openings, target)) < 0.5 * shapely.area(openings)
         lost = openings[beside & shapely.intersects(openings, off.buffer(10.0 * GRID))]
         area = shapely.difference(area, shapely.union_all(lost, grid_size=GRID), grid_size=GRID)
-    return area
+    return _without_lines(area)
+
+
+def _without_lines(area: BaseGeometry) -> BaseGeometry:
+    """The polygons of an area: lines may be left over where a sheet touches itself."""
+    parts = shapely.get_parts(area)
+    return shapely.union_all(parts[shapely.area(parts) > 0.0], grid_size=GRID)
 
 
 def polygons_of(rings: Sequence[FloatArray]) -> npt.NDArray[np.object_]:

@@ -132,9 +132,9 @@ def test_that_a_pdf_of_many_pages_is_written_only_after_asking(
         exporter.export(tmp_path / "small.pdf")
     services.fabrication.change(width_mm=1500.0)
     exporter.export(tmp_path / "large.pdf")
-    until(lambda: any(message.actions for message in designed.messages.messages))
-    asked = next(message for message in designed.messages.messages if message.actions)
-    assert asked.tone is Tone.WARNING and "pages of a4" in asked.sentence
+    until(lambda: any(message.tone is Tone.WARNING for message in designed.messages.messages))
+    asked = next(message for message in designed.messages.messages if message.tone is Tone.WARNING)
+    assert asked.actions and "pages of a4" in asked.sentence
     assert not (tmp_path / "large.pdf").exists()
     ((words, write),) = asked.actions
     assert words == "Write all pages"

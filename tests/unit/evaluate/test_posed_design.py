@@ -81,3 +81,11 @@ def test_that_a_void_which_folds_over_itself_beside_a_cut_is_measured() -> None:
     beside = [[3.2, 2.5], [3.8, 2.5], [3.8, 3.0], [3.2, 3.0]]
     area = covered(sheet, target, removed, np.array([folded, beside])).area
     assert area == pytest.approx(16.0 - 1.0 - 0.3)
+
+
+def test_that_no_lines_are_left_of_what_is_covered() -> None:
+    sheet = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [1.0, 1.0], [0.0, 1.0]])  # a spike
+    target = shapely.box(0.0, 0.0, 2.0, 1.0)
+    for removed in ([], [np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])]):
+        area = covered(sheet, target, removed)
+        assert area.boundary is not None and area.area == pytest.approx(2.0 - 0.25 * len(removed))
