@@ -32,6 +32,8 @@ from kirigami_studio.foundation.arrays import FloatArray, IntArray
 CHORD_MM = 2e-5
 #: The far side of a neck: all that is nearer than this times the nearest place.
 NEARLY = 1.01
+#: A place of the rim that is nearer to a slit than this share of its way to the slit's tip is at the slit's mouth.
+MOUTH = 0.5
 #: Chords of one arc are about as long as each other; the straight piece before an arc is longer than they are by more.
 CHORDS_DIFFER = 2.0
 #: Chords of one arc turn by less than this, and by more than a straight line that has a point on it (radians).
@@ -217,6 +219,8 @@ def _connectors(
         while True:
             near = tree.query(tip.shape, "dwithin", reach)
             near = near[group[near] != tip.group]
+            if OUTLINE in group[near] and _is_mouth(tip, cuts[tip.group], rim):
+                near = near[group[near] != OUTLINE]
             if near.size:
                 break
             reach *= 2.0
@@ -229,6 +233,12 @@ def _connectors(
             )
         )
     return found
+
+
+def _is_mouth(tip: _Tip, cut: BaseGeometry, rim: BaseGeometry) -> bool:
+    """Whether the rim is nearest where a short slit itself runs out: no neck is there."""
+    way = shapely.shortest_line(rim, tip.shape)
+    return bool(shapely.distance(Point(way.coords[0]), cut) < MOUTH * way.length)
 
 
 def _middle(tip: BaseGeometry, far: BaseGeometry, gap: float, hidden_mm: float) -> tuple[float, float]:

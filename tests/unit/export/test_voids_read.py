@@ -148,3 +148,15 @@ def test_that_connectors_are_as_wide_as_asked_unless_the_plan_lists_them() -> No
         (finding,) = void_findings(read_voids(strokes, 1, plan.kerf_mm), other)
         assert (finding.ok, finding.code, finding.fields["count"]) == (False, "verify.connectors_narrower", 1)
         assert (finding.fields["x"], finding.fields["y"]) == tuple(hinges.position[hinge])
+
+
+def test_that_the_mouth_of_a_slit_shorter_than_its_connector_is_no_neck() -> None:
+    outline = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+    through, stub = np.array([[3.9, 2.0], [3.9, 8.0]]), np.array([[10.0, 4.0], [7.0, 5.0]])
+    sheet = [
+        Stroke(through, False, "SLITS", 1),
+        Stroke(stub, False, "EDGE_SLITS", 1),
+        Stroke(outline, True, "OUTLINE", 1),
+    ]
+    (found,) = [one for one in read_voids(sheet, 1, 0.0).connectors if one.slit == 1]
+    assert found.through == 0 and found.width_mm == pytest.approx(3.1)
