@@ -327,7 +327,7 @@ def filled(shape: BaseGeometry, target: Polygon) -> BaseGeometry:
     return shapely.difference(whole, shapely.union_all(rings[shapely.intersects(rings, holes)]))
 
 
-def shown_holes(plan: PinnedPlan, bodies: Sequence[BaseGeometry], silhouette: BaseGeometry) -> tuple[TrimmedHole, ...]:
+def shown_holes(plan: PinnedPlan, bodies: Sequence[BaseGeometry], seen: BaseGeometry) -> tuple[TrimmedHole, ...]:
     """How the pieces leave the holes of their target open."""
     assembly = plan.assembly
     placed = placed_bodies(assembly, bodies, assembly.phi_target)
@@ -336,7 +336,7 @@ def shown_holes(plan: PinnedPlan, bodies: Sequence[BaseGeometry], silhouette: Ba
     for ring in plan.opened.interiors:
         hole = Polygon(ring)
         x, y = places[int(np.argmax(shapely.area(shapely.intersection(placed, hole))))].tolist()
-        covered = hole.intersection(silhouette).area / hole.area
+        covered = hole.intersection(seen).area / hole.area
         found.append(TrimmedHole(1.0 - covered, hole.area / assembly.cell_mm**2, (x, y)))
     return tuple(found)
 

@@ -131,6 +131,18 @@ class Patch:
         return Patch(self.panel, region, self.picture, self.factor * factor, self.shift * factor + shift)
 
 
+def check_bleed(bleed_mm: float) -> None:
+    """Refuse a bleed that is negative or wider than 20 mm.
+
+    Raises
+    ------
+    ExportError
+        It is.
+    """
+    if not 0.0 <= bleed_mm <= MOST_BLEED_MM:
+        raise ExportError("artwork.impossible_bleed", bleed_mm=bleed_mm, most=MOST_BLEED_MM)
+
+
 def printed_patches(artwork: Artwork, sheet: PrintedSheet, bleed_mm: float, kerf_mm: float) -> tuple[Patch, ...]:
     """The print on the flat sheet, to be painted in this order.
 
@@ -146,8 +158,7 @@ def printed_patches(artwork: Artwork, sheet: PrintedSheet, bleed_mm: float, kerf
     ExportError
         A bleed that is negative or wider than 20 mm.
     """
-    if not 0.0 <= bleed_mm <= MOST_BLEED_MM:
-        raise ExportError("artwork.impossible_bleed", bleed_mm=bleed_mm, most=MOST_BLEED_MM)
+    check_bleed(bleed_mm)
     regions = _regions(sheet.cells, bleed_mm, max(0.5 * kerf_mm, LEAST_OVERLAP_MM))
     return patches_of(artwork, sheet, regions)
 

@@ -25,15 +25,14 @@ from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.export.artwork import Artwork, SheetState
 from kirigami_studio.export.artwork_patches import (
     MITRE,
-    MOST_BLEED_MM,
     PanelSimilarities,
     Patch,
     bands_across,
+    check_bleed,
     patches_of,
 )
 from kirigami_studio.export.cut_bed import WEB_MM
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, ShapeRings, as_rings
-from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.outlines.pieces import lines_within
 
 if TYPE_CHECKING:
@@ -169,8 +168,7 @@ def bed_patches(
     ExportError
         A bleed that is negative or wider than 20 mm.
     """
-    if not 0.0 <= bleed_mm <= MOST_BLEED_MM:
-        raise ExportError("artwork.impossible_bleed", bleed_mm=bleed_mm, most=MOST_BLEED_MM)
+    check_bleed(bleed_mm)
     cells = shapely.polygons([Polygon(cell).exterior for cell in printed.cells])
     grown = shapely.buffer(cells, min(bleed_mm, 0.5 * WEB_MM), join_style="mitre", mitre_limit=MITRE)
     found = []

@@ -9,7 +9,8 @@ shift in the held panel's frame.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import shlex
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -44,7 +45,7 @@ GRID_MM = 5e-4
 REST = "REST"
 #: Degrees by which the deck turns the panels against each other, and in how many steps.
 TURN_DEG, STEPS = 10.0, 20
-#: Of the sheet's material, as most plastics, papers and metals have within a factor.
+#: Poisson's ratio: materials of the studio have none of their own.
 POISSON = 0.35
 
 
@@ -129,7 +130,7 @@ def geometry_text(surfaces: Surfaces, name: str) -> str:
     """Return the sheet as a script for Gmsh 4; neighbouring surfaces share their lines."""
     script = [
         f"// Kirigami Studio {__version__}; millimetres",
-        f"// gmsh {name}.geo -2 -format inp -o {name}-mesh.inp",
+        f"// {meshing(name)}",
         "Mesh.ElementOrder = 2;",
         "Mesh.SecondOrderLinear = 1;",
         "Mesh.SaveGroupsOfNodes = 1;",
@@ -161,18 +162,23 @@ def geometry_text(surfaces: Surfaces, name: str) -> str:
     return "\n".join(script) + "\n"
 
 
+def meshing(name: str) -> str:
+    """Command that makes the mesh which a deck includes."""
+    return shlex.join(["gmsh", f"{name}.geo", "-2", "-format", "inp", "-o", f"{name}-mesh.inp"])
+
+
 def _listed(numbers: Sequence[int]) -> str:
     return "{" + ", ".join(map(str, numbers)) + "}"
 
 
 def deck_text(surfaces: Surfaces, plan: CutPlan, linkage: Assembly, name: str) -> str:
     """Return the deck: material, thickness, the held panel, the way of the led one, results."""
-    held, led = grips(linkage)
+    held, led = grips(linkage, surfaces.names)
     way = way_of(linkage, held, led)
     lines = [
         f"** Kirigami Studio {__version__}; mm, N, MPa",
-        f"** gmsh {name}.geo -2 -format inp -o {name}-mesh.inp",
-        f"** ccx {name}",
+        f"** {meshing(name)}",
+        f"** ccx {shlex.quote(name)}",
         f"*INCLUDE, INPUT={name}-mesh.inp",
         "*ELSET, ELSET=SHEET",
         *(f"{one}," for one in surfaces.names),
@@ -209,9 +215,12 @@ def deck_text(surfaces: Surfaces, plan: CutPlan, linkage: Assembly, name: str) -
     return "\n".join(lines) + "\n"
 
 
-def grips(linkage: Assembly) -> tuple[Piece, Piece]:
+def grips(linkage: Assembly, names: Collection[str]) -> tuple[Piece, Piece]:
     """Return the panel to hold and the one to lead, the farthest apart of those that turn alike."""
-    there = [number for number, piece in enumerate(linkage.pieces) if sum(piece.panel) % 2 == 0]
+    alike = [number for number, piece in enumerate(linkage.pieces) if sum(piece.panel) % 2 == 0]
+    there = [
+        number for number in alike if set_name(linkage.pieces[number]) in names
+    ]  # crumbs of trimmed ones have none
     at = linkage.poses(math.pi)[there, :2]
     pair = np.unravel_index(int(np.argmax(np.hypot(*(at[:, None] - at[None]).T))), (len(there), len(there)))
     held, led = (linkage.pieces[there[int(number)]] for number in sorted(pair))
@@ -231,7 +240,7 @@ def way_of(linkage: Assembly, held: Piece, led: Piece) -> FloatArray:
 
 def _write(path: Path, content: str) -> None:
     def verify(written: Path) -> None:
-        if written.read_text(encoding="ascii") != content:
+        if written.read_text(encoding="utf-8") != content:
             raise ExportError("linkage.not_as_written", name=path.name)
 
-    write_atomically(path, content.encode("ascii"), verify)
+    write_atomically(path, content.encode("utf-8"), verify)

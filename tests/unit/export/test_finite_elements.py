@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import shlex
 import shutil
 import subprocess
 from dataclasses import replace
@@ -74,9 +75,22 @@ def test_that_a_sheet_that_falls_apart_is_refused(small: ExportJob, tmp_path: Pa
     assert list(tmp_path.iterdir()) == []
 
 
+def test_that_a_panel_without_a_set_is_neither_held_nor_led(small: ExportJob) -> None:
+    linkage = linkage_of(small)
+    names = [set_name(piece) for piece in linkage.pieces if piece.id != "P3.3"]
+    assert [piece.id for piece in grips(linkage, names)] == ["P1.3", "P3.1"]
+
+
+def test_that_names_may_have_spaces_and_umlauts(small: ExportJob, tmp_path: Path) -> None:
+    deck, script = export_files(small, tmp_path / "schönes Herz.inp")
+    assert "*INCLUDE, INPUT=schönes Herz-mesh.inp" in deck.read_text(encoding="utf-8")
+    command = shlex.split(script.read_text(encoding="utf-8").splitlines()[1].removeprefix("// "))
+    assert command[1] == script.name and command[-1] == "schönes Herz-mesh.inp"
+
+
 def test_that_the_led_panel_keeps_its_turn_and_moves_as_the_design_does(small: ExportJob) -> None:
     linkage = linkage_of(small)
-    held, led = grips(linkage)
+    held, led = grips(linkage, [set_name(piece) for piece in linkage.pieces])
     way = way_of(linkage, held, led)
     assert (held.id, led.id) == ("P1.1", "P3.3") and np.all(way[0] == 0.0)
     # Squares of side a turn by half of it each: their middles are 2 a (cos + sin) apart, seen from a turned one.
@@ -90,7 +104,7 @@ def test_that_the_led_panel_keeps_its_turn_and_moves_as_the_design_does(small: E
 def test_that_calculix_turns_the_panels_as_the_design_does(small: ExportJob, tmp_path: Path) -> None:
     deck, _ = export_files(small, tmp_path / "sheet.inp")
     text = deck.read_text()
-    commands = [line[3:].split() for line in text.splitlines() if line.startswith(("** gmsh", "** ccx"))]
+    commands = [shlex.split(line[3:]) for line in text.splitlines() if line.startswith(("** gmsh", "** ccx"))]
     printed = [f"*NODE PRINT, NSET={name}\nU\n" for name in ("P1_2", "P2_2")]
     deck.write_text(text.replace("*NODE FILE", "".join(printed) + "*NODE FILE"))
     for command in commands:
