@@ -218,9 +218,7 @@ def deck_text(surfaces: Surfaces, plan: CutPlan, linkage: Assembly, name: str) -
 def grips(linkage: Assembly, names: Collection[str]) -> tuple[Piece, Piece]:
     """Return the panel to hold and the one to lead, the farthest apart of those that turn alike."""
     alike = [number for number, piece in enumerate(linkage.pieces) if sum(piece.panel) % 2 == 0]
-    there = [
-        number for number in alike if set_name(linkage.pieces[number]) in names
-    ]  # crumbs of trimmed ones have none
+    there = [number for number in alike if set_name(linkage.pieces[number]) in names]
     at = linkage.poses(math.pi)[there, :2]
     pair = np.unravel_index(int(np.argmax(np.hypot(*(at[:, None] - at[None]).T))), (len(there), len(there)))
     held, led = (linkage.pieces[there[int(number)]] for number in sorted(pair))

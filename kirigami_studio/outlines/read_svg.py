@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -153,6 +154,7 @@ def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget)
             lines.setdefault((shape.layer, _colour(shape.stroke), round(shape.pen.width, 9)), []).append(shape)
     groups = [([chain for shape in some for chain in shape.chains], _line_part(some)) for some in lines.values()]
     found, gaps, bridged = parts_of_groups(groups, WIDEST_GAP, unit)
+    found = _named(found, [shape for some in lines.values() for shape in some])
     parts = [_upright(part) for part in (*parts, *found, *written)]
     if not parts:
         raise TargetError("drawing.no_area")
@@ -187,6 +189,21 @@ def _line_part(shapes: list[Drawn]) -> Part:
     first = shapes[0]
     name = first.name if len(shapes) == 1 else ""
     return Part(0, name, first.layer, _colour(first.stroke), DrawnPartKind.STROKED, Polygon(), (), first.pen)
+
+
+def _named(parts: Sequence[Part], shapes: Sequence[Drawn]) -> list[Part]:
+    """Parts of lines with the name of the shape that all their lines come from, where it has one."""
+    chains = [(shape.name, chain) for shape in shapes for chain in shape.chains if len(chain) > 1]
+    lines = [(number, line) for number, part in enumerate(parts) for line in part.lines]
+    if not chains or not lines:
+        return list(parts)
+    tree = shapely.STRtree([shapely.LineString(line) for _, line in lines])
+    nearest = tree.nearest(shapely.points([chain[:2].mean(axis=0) for _, chain in chains]))
+    names: dict[int, set[str]] = {}
+    for (name, _), place in zip(chains, nearest.tolist(), strict=True):
+        names.setdefault(lines[place][0], set()).add(name)
+    own = {number: some.pop() for number, some in names.items() if len(some) == 1}
+    return [replace(part, name=part.name or own.get(number, "")) for number, part in enumerate(parts)]
 
 
 def _upright(part: Part) -> Part:

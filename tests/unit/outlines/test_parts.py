@@ -441,7 +441,7 @@ def test_that_painted_strokes_are_pieces(svg) -> None:
     body = '<g fill="none" stroke="#000" stroke-width="6"><path id="a" d="M10 10h80"/><path id="b" d="M10 40h70"/></g>'
     source = read_parts(svg(body, MM))
     found = merged(source, source.parts, Merging(Join.EACH, as_painted=True))
-    assert [one.outline.name for one in found.all] == ["drawing", "drawing 2"]  # lines of one pen have no names
+    assert [one.outline.name for one in found.all] == ["a", "b"]
 
 
 def test_that_touching_parts_are_one_piece(svg) -> None:
