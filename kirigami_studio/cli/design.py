@@ -47,7 +47,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.sheet_size import sized
 from kirigami_studio.project.store import save
-from kirigami_studio.project.target_parts import parts_as_cut, scale_of, with_part, with_parts
+from kirigami_studio.project.target_parts import parts_as_cut, scale_of, twins, with_part, with_parts
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
@@ -159,7 +159,10 @@ def design(arguments: argparse.Namespace) -> int:
             one(name, pieces[0].outline)
             return
         whole = with_parts(Document(settings=wanted, fabrication=fabrication), [(p.outline, p.place) for p in pieces])
-        designs = [designed(job_of_part(part), line) for part in parts_as_cut(whole)]
+        parts, designs = parts_as_cut(whole), list[DesignOutcome]()
+        for part, first in zip(parts, twins(parts), strict=True):
+            made = designed(job_of_part(part), line) if first == len(designs) else designs[first].again_for(part)
+            designs.append(made)
         found = parts_of(whole, designs, folder_for(name) if arguments.out else None)
         if batch or arguments.json:
             print_json(({"source": name} if batch else {}) | found.to_json([warn(name, p.outline) for p in pieces]))
@@ -207,6 +210,14 @@ class DesignOutcome:
     contents: Mapping[str, bytes] = field(default_factory=dict)
     #: What is not as it was asked for: no design is trimmed, or another one than the best is cut
     notes: tuple[Note, ...] = ()
+
+    def again_for(self, part: Document) -> DesignOutcome:
+        """The same designs for another part of this shape and size."""
+        target, document = part.target, self.request.document
+        assert target is not None and document is not None  # parts have one, and so has a design that was just made
+        result = replace(self.result, request=replace(self.result.request, target=target))
+        own = CutRequest.of(replace(document, target=target, place=part.place))
+        return replace(self, result=result, request=replace(own, as_cut=self.request.as_cut))
 
     def save(self, folder: Path) -> dict[str, str]:
         """Write the files; returns their paths by role."""

@@ -17,7 +17,7 @@ from kirigami_studio.outlines.starts import no_closed_sheet_shows, start_shape
 from kirigami_studio.outlines.turning import sides_needed
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.fit_again import fit_again
-from kirigami_studio.pipeline.redesign import refitted
+from kirigami_studio.pipeline.redesign import Room, covered, refitted
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, needs_cover
 from kirigami_studio.pipeline.variety import look_alikes
@@ -83,6 +83,17 @@ def test_that_a_shape_that_closed_sheets_show_has_none(run: Result) -> None:
     assert not needs_cover(request, [replace(well, score=replace(well.score, feasible=True, iou_exact=0.971))])
     badly = [replace(well, score=replace(well.score, feasible=True, iou_exact=0.969))]
     assert needs_cover(request, badly) and not needs_cover(replace(request, polish=5), badly)
+
+
+def test_that_panels_of_a_cover_are_more_even_than_the_weight_of_whole_sheets_makes_them(
+    run: Result, keyhole: Outline
+) -> None:
+    request = run.request
+    closed = next(one for one in run.candidates if one.family is Family.CLOSED)
+    room = Room(request.width_mm, request.span_mm)
+    made = covered(closed, keyhole, request.keep, lambda: False, even=request.even, room=room).candidate
+    less = covered(closed, keyhole, request.keep, lambda: False, even=0.25 * request.even, room=room).candidate
+    assert made.score.evenness.area_cv < less.score.evenness.area_cv - 0.01
 
 
 @pytest.mark.parametrize(("name", "sides"), [("heart", 2), ("cross", 4), ("clover", 4), ("gear", 5), ("puzzle", 7)])
