@@ -11,13 +11,14 @@ from shapely.geometry import Polygon
 from kirigami_studio.cli.design import candidates_json, summary
 from kirigami_studio.evaluate.candidate import Candidate, Family, Origin
 from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.outlines.starts import no_closed_sheet_shows, start_shape
 from kirigami_studio.outlines.turning import sides_needed
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.fit_again import fit_again
-from kirigami_studio.pipeline.redesign import Room, covered, refitted
+from kirigami_studio.pipeline.redesign import COVER_EVENNESS, covered, refitted, trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, needs_cover
 from kirigami_studio.pipeline.variety import look_alikes
@@ -26,6 +27,7 @@ from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.cutting import span_mm
 from kirigami_studio.studio.designing import closed_limit, first_of_families, limit_of, why_covered
 from kirigami_studio.studio.verdict import look_at
+from tests.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -85,15 +87,22 @@ def test_that_a_shape_that_closed_sheets_show_has_none(run: Result) -> None:
     assert needs_cover(request, badly) and not needs_cover(replace(request, polish=5), badly)
 
 
-def test_that_panels_of_a_cover_are_more_even_than_the_weight_of_whole_sheets_makes_them(
-    run: Result, keyhole: Outline
+def test_that_even_panels_count_more_in_a_cover_than_in_a_whole_sheet(
+    run: Result, keyhole: Outline, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    request = run.request
     closed = next(one for one in run.candidates if one.family is Family.CLOSED)
-    room = Room(request.width_mm, request.span_mm)
-    made = covered(closed, keyhole, request.keep, lambda: False, even=request.even, room=room).candidate
-    less = covered(closed, keyhole, request.keep, lambda: False, even=0.25 * request.even, room=room).candidate
-    assert made.score.evenness.area_cv < less.score.evenness.area_cv - 0.01
+    weights: list[float] = []
+
+    def fit(*arguments: object, even: float, **more: object) -> None:
+        weights.append(even)
+        raise KirigamiError("trim.nothing_left")
+
+    monkeypatch.setattr("kirigami_studio.pipeline.redesign.fit_cover", fit)
+    for made in (covered, trimmed):
+        more = {"even": run.request.even} if made is covered else {}
+        with refused(KirigamiError, "trim.nothing_left"):
+            made(closed, keyhole, run.request.keep, lambda: False, **more)
+    assert weights == [COVER_EVENNESS * run.request.even, 0.0] and weights[0] > 2.0 * run.request.even > 0.0
 
 
 @pytest.mark.parametrize(("name", "sides"), [("heart", 2), ("cross", 4), ("clover", 4), ("gear", 5), ("puzzle", 7)])
