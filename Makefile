@@ -17,7 +17,7 @@ QUICK_TESTS = $(shell grep -rLE --include='test_*.py' 'torch|distributed|PySide6
 
 CATALOGUES := $(patsubst %.po,%.mo,$(wildcard resources/locale/*/LC_MESSAGES/*.po))
 
-.PHONY: help setup run test test-all test-durations fuzz soak pinned prints checks readers quick lint bench consumers demo states pairs pictures shapes figures notebook \
+.PHONY: help setup run test test-all test-durations fuzz soak pinned prints checks readers quick lint bench consumers demo states pairs pictures shapes gallery figures notebook \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 
@@ -42,6 +42,7 @@ help:
 	@echo "make pairs   make the bundled designs from one shape to another: resources/pairs"
 	@echo "make pictures  make the pictures of README, guide and tutorials with the program"
 	@echo "make shapes  make docs/pictures/shapes.png: three states of the first design for every library silhouette"
+	@echo "make gallery  write the pages and pictures of docs/gallery, and design what is missing"
 	@echo "make figures  draw the figures of docs/mathematics.md"
 	@echo "make animation  play and record two minutes of use: docs/pictures/session.mp4"
 	@echo "make notebook  play docs/first-design.ipynb and keep what its cells show"
@@ -208,6 +209,9 @@ shapes: setup
 	$(BIN)/kirigami-studio benchmark designs --targets library --grid auto --k 32 --polish 15 --states \
 	  --picture out/shapes.png --out out/shapes.json
 	cp out/shapes.png docs/pictures/shapes.png
+
+gallery: setup
+	$(BIN)/python packaging/make_gallery.py
 
 figures: setup
 	$(BIN)/python -m kirigami_studio.lab.demonstrations.mathematics_figures --out docs/pictures/mathematics
