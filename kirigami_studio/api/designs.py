@@ -352,7 +352,7 @@ def _quietly(progress: Progress) -> None:
 
 
 class _Line:
-    """A line on standard output, written over in terminals and notebooks; elsewhere a line for every tenth."""
+    """Progress on standard output: a line written over, or in files a line for every tenth."""
 
     def __init__(self) -> None:
         self._begun = False

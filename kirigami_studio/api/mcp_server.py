@@ -1,4 +1,4 @@
-"""The Model Context Protocol over the API: assistants design, judge, export and look at sheets in one folder.
+"""The Model Context Protocol over the API: tools for assistants, whose files are in one folder.
 
 ``kirigami-studio mcp --folder DIR`` speaks it on standard input and output.  The official SDK, which the extra ``mcp``
 brings, is imported when the server starts.
@@ -105,10 +105,10 @@ class FolderTools:
         connector_mm: float | None = None,
         construction: Literal["one-sheet", "pinned", "backed", "printed"] | None = None,
     ) -> dict[str, Any]:
-        """Say whether a design can be cut: it matches, fits the material, closes; with the problems, worst first.
+        """Judge whether a design can be cut: it matches, fits the material, closes.
 
-        name: of a design of the project (A1, A2, ...); the chosen one unless given.  What is left out is as in the
-        project.
+        Answers with the problems, worst first.  name: of a design of the project (A1, A2, ...); the chosen one unless
+        given.  What is left out is as in the project.
         """
         one = self._design(project, name)
         given = _given(material=material, width_mm=width_mm, connector_mm=connector_mm, construction=construction)

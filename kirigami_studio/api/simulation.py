@@ -59,7 +59,7 @@ class Simulation:
 
     @property
     def torque_nmm(self) -> FloatArray:
-        """Moment (S,), N mm, against the mean angle, elastic: the upper figure; NaN where panels are led."""
+        """Elastic moment (S,), N mm, against the mean angle: the upper figure; NaN with grips."""
         torque = self.loads.in_plane.torque_nmm
         return np.full(len(self.phi), np.nan) if torque is None else torque
 

@@ -1,4 +1,4 @@
-"""Assigning to values of the API, functions of several angles, and packages that only some of it needs."""
+"""Values that are read only, functions of several angles, and optional packages."""
 
 from __future__ import annotations
 

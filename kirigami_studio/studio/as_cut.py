@@ -547,7 +547,7 @@ class Leading:
 def jam_of(
     found: Closing, deployment: Deployment, width_mm: float, tolerated: float = TOLERATED_STRETCH
 ) -> tuple[float, Source]:
-    """Angle (radians) at which a sheet jams; estimated where it was not driven as far as it goes."""
+    """Angle (radians) at which a sheet jams; an estimate where it was not driven to its end."""
     free = len(found.phi) == found.asked and float(found.stretch.max()) <= tolerated
     if free and float(found.phi[-1]) > CLOSED + CLOSE_TO:
         return estimated_jam(estimate_stretch(deployment, found.sheet, width_mm), tolerated), Source.ESTIMATE
