@@ -365,7 +365,9 @@ def manual() -> str:
 
     parser.has_lab = lambda: False  # as in the frozen program
     data = {"project_name": "Kirigami Studio", "version": version(), "manual_title": "Kirigami Studio"}
-    return str(Manpage(parser.build_parser(), _data=data))
+    page = str(Manpage(parser.build_parser(), _data=data))
+    # A line that begins with an extension is no macro; those of troff that lack capitals have two letters.
+    return re.sub(r"(?m)^\.(?=[a-z0-9]{3})", r"\\&.", page)
 
 
 def dated(text: str) -> str:

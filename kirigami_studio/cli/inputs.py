@@ -88,8 +88,8 @@ def standard_input(arguments: argparse.Namespace) -> Iterator[None]:
         path.write_bytes(content)
         for name in asked:
             given = named[name]
-            several = isinstance(given, list)
-            setattr(arguments, name, [str(path) if one == STREAM else one for one in given] if several else str(path))
+            files = [str(path) if one == STREAM else one for one in given] if isinstance(given, list) else str(path)
+            setattr(arguments, name, files)
         with standing_in(path):
             try:
                 yield

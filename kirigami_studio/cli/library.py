@@ -68,7 +68,7 @@ def completion(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _complete_files(parser: argparse.ArgumentParser, files: dict[str, str]) -> None:
+def _complete_files(parser: argparse.ArgumentParser, files: object) -> None:
     """Have texts of every command that are no choices completed as names of files."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
