@@ -1,4 +1,4 @@
-"""The Model Context Protocol over the API: tools for assistants, whose files are in one folder.
+"""The Model Context Protocol over the API: tools for assistants, with files in one folder.
 
 ``kirigami-studio mcp --folder DIR`` speaks it on standard input and output.  The official SDK, which the extra ``mcp``
 brings, is imported when the server starts.
