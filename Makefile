@@ -64,6 +64,8 @@ COMPILE := import sys; from babel.messages import mofile, pofile; \
 # pip would compile everything on one core, which takes as long as all the rest; Python compiles what is left out here
 # when it is needed.  As pip does, this goes on past files that are no Python: templates that come with PySide.
 INSTALL := $(BIN)/python -m pip install -q --no-compile -c packaging/constraints-cpu.txt
+# A path, and no import hook, so that type checkers and editors find the program.
+EDITABLE := --config-settings editable_mode=compat -e
 SELDOM_USED := tests|_inductor|_dynamo|onnx|sympy|networkx|mypy|pip|pygments|mpmath
 $(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system_libraries.sh
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
@@ -71,7 +73,7 @@ $(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system
 	sh packaging/system_libraries.sh & libraries=$$!; \
 	{ test -x $(BIN)/python || $(PYTHON) -m venv .venv; } \
 	  && $(INSTALL) --retries 1 --extra-index-url $(TORCH_INDEX) torch \
-	  && $(INSTALL) -e '.[test,lint]' \
+	  && $(INSTALL) $(EDITABLE) '.[test,lint]' \
 	  && { $(BIN)/python -m compileall -qq -j 0 -x '/($(SELDOM_USED))/' .venv/lib || true; }; made=$$?; \
 	  wait $$libraries && exit $$made
 	@touch $@
@@ -224,7 +226,7 @@ notebook: setup $(DOCS_STAMP)
 
 # MkDocs and what it needs, and what plays notebooks; the tests build the site too.
 $(DOCS_STAMP): $(STAMP)
-	$(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt -e '.[docs]'
+	$(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt $(EDITABLE) '.[docs]'
 	@touch $@
 
 site: setup $(DOCS_STAMP)
