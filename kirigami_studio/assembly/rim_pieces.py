@@ -233,7 +233,7 @@ def _cut(
         Whether necks alone may stay.
     """
     motion, body = shaping.motion, shaping.bodies[index]
-    whole = shaping.heldtogether(index, wanted)
+    whole = shaping.held_together(index, wanted)
     linked = whole is None
     pins, half = as_points(motion.corners[index][motion.hinged[index]]), 0.5 * float(shaping.neck_mm[index])
     # In a hole they are nowhere hidden: as near to its rim as there is a way.
@@ -241,11 +241,11 @@ def _cut(
         if whole is None:
             room = body if beyond == math.inf else shared(body, united(wanted, mine.buffer(beyond)))
             links = shortest_links(room, pins, mine, half)
-            whole = shaping.heldtogether(index, united(wanted, shared(body, links)))
+            whole = shaping.held_together(index, united(wanted, shared(body, links)))
     if whole is not None and (to_necks or not linked or whole.area >= LEAST_KEPT * body.area):
         yield whole
     for beyond in BEYOND_MM:
-        whole = shaping.heldtogether(index, united(wanted, shared(body, mine.buffer(beyond))))
+        whole = shaping.held_together(index, united(wanted, shared(body, mine.buffer(beyond))))
         if whole is not None:
             yield whole
 

@@ -45,7 +45,7 @@ LEAST_PART = 0.5
 #: Differences between polygons that are smaller, mm2, are those of rounding.
 TOO_SMALL = 1e-3
 #: Vertices that lie nearer than this, mm, to the line between their neighbours are left out.
-STRAIGHT = 0.002
+STRAIGHT = 0.005
 #: Areas between necks are larger by this, mm, all round than the shapes that they are parts of: edges that nearly
 #: coincide take overlays six times as long.
 CLEAR = 1e-4
@@ -246,7 +246,7 @@ class Shaping:
         return [
             _Notched(
                 shape,
-                self.heldtogether(index, shape),
+                self.held_together(index, shape),
                 mover[meets & (seen == index) & ~is_strap],
                 mover[meets & (seen == index) & is_strap],
             )
@@ -400,7 +400,7 @@ class Shaping:
         swept: BaseGeometry = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
         return swept
 
-    def heldtogether(self, index: int, shape: BaseGeometry) -> Polygon | None:
+    def held_together(self, index: int, shape: BaseGeometry) -> Polygon | None:
         """The part of a shape that has all ears of a piece, and nothing narrower than a neck.
 
         None where the ears do not hang together by necks as wide as those of the piece.
@@ -426,7 +426,7 @@ class Shaping:
         """The same by the widest necks that there are; the largest part where there are none."""
         for share in NARROWER:
             self.neck_mm[index] = share * self.options.neck_mm
-            if (one := self.heldtogether(index, shape)) is not None:
+            if (one := self.held_together(index, shape)) is not None:
                 return one
         self.broken.add(index)
         return _largest(shape)
