@@ -371,9 +371,7 @@ def _turned(derivative: FloatArray, factor: complex, more: int) -> FloatArray:
     return turned
 
 
-def _with_pose(
-    derivative: FloatArray, points: FloatArray, pose: FloatArray, first: int, poses: int
-) -> FloatArray:
+def _with_pose(derivative: FloatArray, points: FloatArray, pose: FloatArray, first: int, poses: int) -> FloatArray:
     """A derivative of posed ``points`` (L, 2) by variables and poses, (2 L, V + P), from (L, 2, V + P) with open
     columns for the P numbers of ``poses``; the points' own pose begins at number ``first`` of these.
     """
