@@ -73,12 +73,12 @@ def test_that_no_label_field_tooltip_or_spoken_name_tells_of_mm_in_inches(inches
 
 def test_that_verdicts_and_refusals_are_in_inches(inches: MainWindow, until: Until) -> None:
     services, verdict = inches.services, inches.services.verdict
-    services.fabrication.change(material="card-co2", connector_mm=0.9)
-    until(lambda: verdict.state.verdict is not None and not verdict.state.pending)
-    assert in_mm(inches) == {}
     services.fabrication.change(kerf_mm=4.0)
-    until(lambda: not inches.fabrication.export.isEnabled())
+    until(lambda: not inches.fabrication.export.isEnabled() and verdict.state.verdict is not None)
     assert in_mm(inches) == {} and " in " in inches.fabrication.warnings.text()
+    services.fabrication.change(kerf_mm=None, material="card-co2", connector_mm=0.9)
+    until(lambda: verdict.state.verdict is not None and verdict.state.verdict.as_cut is not None)
+    assert in_mm(inches) == {}
 
 
 def test_that_dialogs_are_in_inches(inches: MainWindow) -> None:
