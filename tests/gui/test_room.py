@@ -9,6 +9,7 @@ from PySide6.QtCore import QPoint, QRect
 from PySide6.QtWidgets import QApplication, QToolBar, QToolButton, QWidget
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.gui.make.fabrication_panel import LEAST_CHOICES
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.pages import WindowPage
@@ -136,3 +137,28 @@ def test_that_a_message_is_low_where_its_buttons_stand_below_it(designed: MainWi
     designed.messages.add(Message(LONG[:170], Tone.ERROR, "line", actions=(("Open another …", lambda: None),)))
     resized(designed, 1000, 640)
     assert short <= 48 and designed.messages.height() <= 96
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1000, 640)])
+def test_that_the_choices_of_making_end_below_a_whole_row(designed: MainWindow, width: int, height: int) -> None:
+    designed.pages.turn(WindowPage.MAKE)
+    designed.resize(width, height)
+    QApplication.processEvents()
+    scrolled = designed.fabrication.scrolled
+    seen = scrolled.viewport().rect()
+    assert seen.height() >= LEAST_CHOICES // 2 and scrolled.verticalScrollBar().value() == 0
+    for field in designed.fabrication.form.fields.values():
+        if field.isVisible():
+            top = field.mapTo(scrolled.viewport(), QPoint()).y()
+            assert top + field.height() <= seen.height() or top >= seen.height(), field.objectName()
+
+
+@pytest.mark.parametrize("page", WindowPage)
+def test_that_the_primary_button_is_whole_in_a_small_window(designed: MainWindow, page: WindowPage) -> None:
+    designed.resize(1000, 640)
+    designed.pages.turn(page)
+    QApplication.processEvents()
+    button = designed.fabrication.export if page is WindowPage.MAKE else designed.run.generate
+    corner = button.mapTo(designed, QPoint())
+    assert button.isVisible() and designed.rect().contains(QRect(corner, button.size()))
+    assert button.width() >= button.sizeHint().width()
