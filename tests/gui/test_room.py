@@ -129,6 +129,19 @@ def test_that_messages_move_nothing_and_hide_no_button_of_the_tool_bar(
     assert words.height() >= words.heightForWidth(words.width()), "all of the sentence is seen"
 
 
+def test_that_a_long_name_of_the_project_leaves_the_tool_bar_and_messages_in_the_window(designed: MainWindow) -> None:
+    designed.heading.setText(LONG)
+    resized(designed, 1000, 640)
+    designed.messages.add(Message("Saved heart.kiri.", Tone.WARNING))
+    resized(designed, 1000, 640)
+    buttons = [part for part in designed.findChildren(QToolButton) if part.defaultAction() is not None]
+    buttons = [button for button in buttons if isinstance(button.parent(), QToolBar)]
+    assert len(buttons) > 8
+    for part in (*buttons, designed.messages):
+        corner = part.mapTo(designed, QPoint())
+        assert part.isVisible() and designed.rect().contains(QRect(corner, part.size())), part.objectName()
+
+
 def test_that_a_message_is_low_where_its_buttons_stand_below_it(designed: MainWindow) -> None:
     resized(designed, 1000, 640)
     designed.messages.add(Message("Saved heart.kiri.", Tone.DONE))

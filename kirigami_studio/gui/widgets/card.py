@@ -95,6 +95,9 @@ class ElidedLabel(QLabel):
         super().setText(shortened(text))
         self.setToolTip(self.text())
 
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(0, super().minimumSizeHint().height())
+
     def drawn_text(self) -> str:
         """What is shown at the present width."""
         room = self.contentsRect().width()
@@ -103,9 +106,7 @@ class ElidedLabel(QLabel):
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = QPainter(self)
         painter.setPen(self.palette().color(self.foregroundRole()))
-        painter.drawText(
-            self.contentsRect(), int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft), self.drawn_text()
-        )
+        painter.drawText(self.contentsRect(), int(self.alignment()), self.drawn_text())
         painter.end()
 
 
