@@ -353,11 +353,11 @@ class RunPhase:
         return Progress(done, total, tr(self.words, done=done, total=total))
 
 
-GUIDING = RunPhase(mark("Fitting from the uniform sheet: {done} of {total} done"), "run.stopped_polishing")
+GUIDING = RunPhase(mark("Fitting: {done} of {total} done"), "run.stopped_polishing")
 POLISHING = RunPhase(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
 SEARCHING = RunPhase(mark("Searching: {done} of {total} done"), "run.stopped_searching")
-FINISHING = RunPhase(mark("Finishing the best: {done} of {total} done"), "run.stopped_polishing")
-COVERING = RunPhase(mark("Covering the shape: {done} of {total} done"), "run.stopped_trimming")
+FINISHING = RunPhase(mark("Finishing: {done} of {total} done"), "run.stopped_polishing")
+COVERING = RunPhase(mark("Covering: {done} of {total} done"), "run.stopped_trimming")
 TRIMMING = RunPhase(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
 
 
