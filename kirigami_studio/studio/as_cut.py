@@ -117,6 +117,7 @@ class AsCut:
     strain_limit: float = math.inf
     thinness: float = 0.0
     yields_at: float = 0.0
+    flat_iou: float | None = None  #: Exact IoU of flat pieces with their start; None where there are no pieces
 
     def __post_init__(self) -> None:
         check_phi(self.jam_phi)
@@ -130,6 +131,11 @@ class AsCut:
     def closes(self) -> bool:
         """Whether the sheet comes to the angle that it is meant for."""
         return self.outcome is Outcome.CLOSES
+
+    @property
+    def of_pieces(self) -> bool:
+        """Whether its match is that of pieces put together."""
+        return self.iou is not None and self.flat_iou is not None
 
     @property
     def nearly_closes(self) -> bool:
@@ -432,13 +438,13 @@ def grips_on_tiles(
     return held, pulled
 
 
-def motion_on_pins(phi: float, iou: float | None = None) -> AsCut:
+def motion_on_pins(phi: float, iou: float | None = None, flat_iou: float | None = None) -> AsCut:
     """Tell how a pinned design moves: all the way to ``phi`` (radians), without strain.
 
-    ``iou`` is that of its checked pieces with the target; without it the motion counts as estimated.
+    Both numbers are those of its checked pieces with target and start; without them the motion counts as estimated.
     """
     source = Source.ESTIMATE if iou is None else Source.SIMULATION
-    return AsCut(0.0, phi, Outcome.CLOSES, 0.0, 0.0, StrainFigure.IN_PLANE, iou, iou, source)
+    return AsCut(0.0, phi, Outcome.CLOSES, 0.0, 0.0, StrainFigure.IN_PLANE, iou, iou, source, flat_iou=flat_iou)
 
 
 def estimated_jam(found: StretchEstimate, tolerated: float = TOLERATED_STRETCH) -> float:
