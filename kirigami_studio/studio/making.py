@@ -1061,7 +1061,13 @@ def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[S
     candidate = request.candidate
     kept = None if candidate.trim is None else candidate.trim.kept
     steps = simulate(
-        request.deployment, made.plan, request.settings.width_mm, candidate.final_phi, request.target, kept
+        request.deployment,
+        made.plan,
+        request.settings.width_mm,
+        candidate.final_phi,
+        request.target,
+        kept,
+        candidate.final_pose,
     )
     yield from in_turns(steps, cancel)
 

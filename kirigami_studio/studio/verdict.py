@@ -391,7 +391,7 @@ def closing_as_cut(
     """The same step by step."""
     kept = None if candidate.trim is None else candidate.trim.kept
     try:
-        sheet = yield from simulate(deployment, plan, width_mm, candidate.final_phi, target, kept)
+        sheet = yield from simulate(deployment, plan, width_mm, candidate.final_phi, target, kept, candidate.final_pose)
     except KirigamiError as error:
         return str(error)
     return sheet.as_cut

@@ -171,6 +171,17 @@ def test_that_card_table_header_status_and_comparison_show_the_match_of_the_piec
     assert {pane.figures.values["match"].text() for pane in stage.compare.shown} >= {match}
 
 
+def test_that_missing_and_extra_area_agree_with_the_match_of_the_pieces(pinned: MainWindow, until: Until) -> None:
+    view, session = pinned.stage.view, pinned.session
+    until(lambda: view._pieces is not None)
+    assert session.stage is not None and session.document.target is not None
+    view.grab()
+    made = assembled(session.stage.candidate, session.document.fabrication, session.document.target)
+    assert view.areas is not None
+    found = (1.0 - view.areas.missing_share) / (1.0 + view.areas.extra_share)
+    assert found == pytest.approx(made.report.figures.match, abs=1e-6)
+
+
 def test_that_cards_are_ranked_by_the_match_that_they_show(pinned: MainWindow, until: Until) -> None:
     services, model = pinned.services, pinned.gallery.view.model_
     until(lambda: all_made(pinned) and len(services.estimates.verdicts) == 2)
