@@ -40,6 +40,10 @@ from kirigami_studio.polish.vertex_drag import VertexDrag
 
 #: Steps of the fit before trimming.
 COVER_STEPS = 12
+#: Even panels count so many times as much in a cover as in whole sheets: it has match to spare, and small panels in a
+#: thin arm run into each other before it has closed.  In film, a leaf's covers jammed at 5 degrees and showed 0.972 and
+#: 0.928 of it as cut; with this they close at 0.989.  Twice as much is not enough for them, eight times too much for a plug.
+COVER_EVENNESS = 4.0
 
 #: Accepted steps of one fit that the user asks for; most end before that because nothing more is gained.
 REFIT_STEPS = 20
@@ -223,7 +227,7 @@ def covered(
     candidate, target, keep, cancel, locked, least_panel, room
         As for :func:`trimmed`.
     even : float
-        Weight of even panels.
+        Weight of even panels in whole sheets; a cover is fitted with :data:`COVER_EVENNESS` times as much.
 
     Returns
     -------
@@ -235,7 +239,17 @@ def covered(
     KirigamiError
         The candidate's outline crosses itself.
     """
-    cover = _cover(candidate, target, keep, cancel, locked, least_panel=least_panel, even=even, notched=True, room=room)
+    cover = _cover(
+        candidate,
+        target,
+        keep,
+        cancel,
+        locked,
+        least_panel=least_panel,
+        even=COVER_EVENNESS * even,
+        notched=True,
+        room=room,
+    )
     with one_blas_thread():
         deployment = deploy(cover.trim.sheet)
         score = evaluate(deployment, target, candidate.score.phi)
