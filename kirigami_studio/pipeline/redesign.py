@@ -42,7 +42,8 @@ from kirigami_studio.polish.vertex_drag import VertexDrag
 COVER_STEPS = 12
 #: Even panels count so many times as much in a cover as in whole sheets: it has match to spare, and small panels in a
 #: thin arm run into each other before it has closed.  In film, a leaf's covers jammed at 5 degrees and showed 0.972 and
-#: 0.928 of it as cut; with this they close at 0.989.  Twice as much is not enough for them, eight times too much for a plug.
+#: 0.928 of it as cut; with this they close at 0.989.  Twice as much is not enough for them, eight times too much for a
+#: plug.
 COVER_EVENNESS = 4.0
 
 #: Accepted steps of one fit that the user asks for; most end before that because nothing more is gained.
