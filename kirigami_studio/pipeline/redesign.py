@@ -206,6 +206,7 @@ def covered(
     least_panel: float = 0.0,
     even: float = 0.0,
     room: Room = NO_ROOM,
+    least_gap: float = 0.0,
 ) -> Trimmed:
     """Make a cover of a candidate: a sheet over the target of which parts are cut away.
 
@@ -215,6 +216,8 @@ def covered(
         As for :func:`trimmed`.
     even : float
         Weight of even panels.
+    least_gap : float, unit cells
+        How far apart pins stay; 0 for sheets without.
 
     Returns
     -------
@@ -226,7 +229,18 @@ def covered(
     KirigamiError
         The candidate's outline crosses itself.
     """
-    cover = _cover(candidate, target, keep, cancel, locked, least_panel=least_panel, even=even, notched=True, room=room)
+    cover = _cover(
+        candidate,
+        target,
+        keep,
+        cancel,
+        locked,
+        least_panel=least_panel,
+        even=even,
+        notched=True,
+        room=room,
+        least_gap=least_gap,
+    )
     with one_blas_thread():
         deployment = deploy(cover.trim.sheet)
         score = evaluate(deployment, target, candidate.score.phi)
@@ -246,6 +260,7 @@ def _cover(
     even: float = 0.0,
     notched: bool = False,
     room: Room,
+    least_gap: float = 0.0,
 ) -> Cover:
     """Fit a candidate's sheet so that it covers the target, within its own rim and symmetry."""
     sheet, score = candidate.sheet, candidate.score
@@ -264,6 +279,7 @@ def _cover(
             symmetry=kept_symmetry(sheet) if free else None,
             even=even,
             least_panel=least_panel,
+            least_gap=least_gap,
             notched=notched,
             # Locked voids keep their ratios, whatever room there is.
             room=(room if free else NO_ROOM).made,
@@ -329,7 +345,7 @@ def refitted(
     gap = gap_in_cells(least_gap_mm, width_mm, score.evenness.width)
     ranking, room = Ranking(regular, width_mm, least_feature_mm, least_gap_mm), Room(width_mm, span_mm)
     if candidate.origin is Origin.COVERED:
-        cover = covered(candidate, target, keep(), cancel, table, least, even_weight(regular), room).candidate
+        cover = covered(candidate, target, keep(), cancel, table, least, even_weight(regular), room, gap).candidate
         _stop_if(cancel)
         return Refit(cover, ranking.worth_as_made(cover) > ranking.worth_as_made(candidate))
     with one_blas_thread():
