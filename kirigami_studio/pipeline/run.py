@@ -86,9 +86,9 @@ COVERS = 2
 #: They are made in any case where no closed design of a run that was fitted to its end matches better than this.
 COVERED_BELOW = 0.97
 
-#: The same of pinned sheets: notches are filled until the shape turns back by one of these (radians), it is covered from
-#: so many poses by sheets of both hands, and so many of the covers are kept.  A fit takes half a second, for no arm has
-#: to be reached.
+#: The same of pinned sheets: notches are filled until the shape turns back by one of these (radians), it is covered
+#: from so many poses by sheets of both hands, and so many covers are kept.  A fit takes half a second, for no arm has to
+#: be reached.
 PINNED_COVER_TURNS, PINNED_COVER_POSES, PINNED_COVERS = (EASY_TURN, math.radians(60.0)), 3, 4
 
 #: Seconds between two signs of life while fits are under way.
