@@ -19,7 +19,17 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.cut_away import kept_voids, rim_loops
 from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
-from kirigami_studio.assembly.shaping import LEAST_PART, OVERLAP, ZONE_CHORDS, Shaping, less, shared, together, united
+from kirigami_studio.assembly.shaping import (
+    COARSE,
+    LEAST_PART,
+    OVERLAP,
+    ZONE_CHORDS,
+    Shaping,
+    less,
+    shared,
+    together,
+    united,
+)
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import PanelTable
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
@@ -355,6 +365,7 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
     gaps = shapely.get_parts(missing)
     gaps = gaps[shapely.area(gaps) > LEAST_PART]
     rims = shapely.intersects(gaps, state.outline.boundary)
+    coarse = shapely.simplify(placed, COARSE)
     for by_shares in (True, False):
         piece, gap = shapely.STRtree(gaps).query(shaping.placed(state.turn), predicate="dwithin", distance=TOUCHED)
         worth = np.bincount(piece, shapely.area(gaps)[gap], len(placed))
@@ -362,7 +373,7 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
             near = gap[piece == index]
             beside = near[rims[near]]
             at_rim = (
-                shared(together(gaps[beside]), placed[index].buffer(reach, quad_segs=ZONE_CHORDS))
+                shared(together(gaps[beside]), coarse[index].buffer(reach, quad_segs=ZONE_CHORDS))
                 if len(beside)
                 else Polygon()
             )
