@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -51,9 +52,17 @@ class Room:
     width_mm: float = 100.0  #: of the flat sheet
     span_mm: float = 0.0  #: width of a connector and of the cut; 0 where connectors need no room
 
-    def made(self, deployment: Deployment) -> Deployment:
-        """The sheet with that room, as planning makes it for whole ones."""
-        return roomy(deployment, self.width_mm, self.span_mm) if self.span_mm else deployment
+    def made(self, deployment: Deployment, cancel: Callable[[], bool] = lambda: False) -> Deployment:
+        """The sheet with that room, as planning makes it for whole ones; itself where that is called off."""
+
+        def go_on() -> None:
+            if cancel():
+                raise Cancelled("plan.stopped")
+
+        try:
+            return roomy(deployment, self.width_mm, self.span_mm, go_on) if self.span_mm else deployment
+        except Cancelled:
+            return deployment
 
 
 NO_ROOM = Room()
@@ -266,7 +275,7 @@ def _cover(
             least_panel=least_panel,
             notched=notched,
             # Locked voids keep their ratios, whatever room there is.
-            room=(room if free else NO_ROOM).made,
+            room=partial((room if free else NO_ROOM).made, cancel=cancel),
         )
 
 

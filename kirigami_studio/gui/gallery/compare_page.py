@@ -62,7 +62,7 @@ TIPS = {
     "as_cut": mark("Whether the sheet comes to its angle as cut, or where it jams. \N{ALMOST EQUAL TO}: an estimate."),
     "strain": mark("Largest strain of a connector on the way there. \N{ALMOST EQUAL TO}: an estimate."),
     "time": mark("How long cutting takes; differences in seconds."),
-    "smallest": mark("Smallest panel edge or neck, mm."),
+    "smallest": mark("Smallest panel edge or neck."),
     "panels": mark("How much panel sizes vary (coefficient of variation)."),
     "gain": mark("Points of sIoU gained over a sheet of equal cuts."),
     "roughness": mark("Total variation (TV) of the ratios, lower is smoother."),

@@ -116,9 +116,9 @@ class GalleryModel(QAbstractListModel):
         if role == Qt.ItemDataRole.ToolTipRole:
             return f"{self._described(entry)}\n{self._placed(entry)}"
         if role == Qt.ItemDataRole.AccessibleTextRole:
-            return self._described(entry)
+            return self._spoken(entry)
         if role == Qt.ItemDataRole.AccessibleDescriptionRole:
-            return self._placed(entry)
+            return f"{self._described(entry)}\n{self._placed(entry)}"
         known = self._facts.get(role)
         return None if known is None else known(entry)
 
@@ -153,6 +153,24 @@ class GalleryModel(QAbstractListModel):
         if self._starts_differ is None:
             self._starts_differ = len({start_of(entry.candidate) for entry in self._all}) > 1
         return self._starts_differ
+
+    def _spoken(self, entry: Entry) -> str:
+        """Name, match and verdict: the card in one line, for screen readers."""
+        candidate = entry.candidate
+        words = [
+            tr(
+                "Design {name}: match {match:.1f} %, {verdict}",
+                name=self.name_of(candidate),
+                match=100 * candidate.match,
+                verdict=self.verdict_of(candidate).words,
+            )
+        ]
+        mark, alike = self.mark_of(candidate), self._stacks.under(candidate)
+        if mark is not Mark.NONE:
+            words.append(tr("Pinned") if mark is Mark.PINNED else tr("Rejected"))
+        if alike:
+            words.append(tr("+{count} alike", count=alike))
+        return ", ".join(words)
 
     def _described(self, entry: Entry) -> str:
         lines = [described(entry.candidate, self.name_of(entry.candidate), self.as_cut_of(entry.candidate))]
