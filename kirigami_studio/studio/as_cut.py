@@ -574,8 +574,8 @@ def simulate(
     phi: float,
     target: Outline | None = None,
     kept: Sequence[FloatArray | None] | None = None,
-    pose: Similarity | None = None,
     lead: Leading | None = None,
+    pose: Similarity | None = None,
 ) -> Generator[None, None, SimulatedSheet]:
     """Close a sheet on the connectors of its planned cuts; yields between the steps, for others to have their turn.
 
@@ -591,10 +591,10 @@ def simulate(
     target : Outline, optional
     kept : sequence of (P, 2) float or None, unit cells, optional
         What stays of every panel of a trimmed sheet.
-    pose : Similarity, optional
-        Of the design at ``phi`` over the target: of poses that are as good as cut, the one nearby counts.
     lead : Leading, optional
         How it is closed; all the way by its mean angle unless given.
+    pose : Similarity, optional
+        Of the design at ``phi`` over the target: of poses that are as good as cut, the one nearby counts.
 
     Raises
     ------
@@ -658,7 +658,7 @@ def simulated(
         Panels that do not hang together.
     """
     motion, kept = deployment or deploy(candidate.final_sheet), None if candidate.trim is None else candidate.trim.kept
-    return result_of(simulate(motion, plan, width_mm, candidate.final_phi, target, kept, candidate.final_pose, lead))
+    return result_of(simulate(motion, plan, width_mm, candidate.final_phi, target, kept, lead, candidate.final_pose))
 
 
 def _simulated(plan: CutPlan, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:

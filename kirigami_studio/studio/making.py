@@ -1067,7 +1067,7 @@ def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[S
         candidate.final_phi,
         request.target,
         kept,
-        candidate.final_pose,
+        pose=candidate.final_pose,
     )
     yield from in_turns(steps, cancel)
 
