@@ -161,6 +161,7 @@ def test_that_card_table_header_status_and_comparison_show_the_match_of_the_piec
         index = model.index(model.row_of(candidate), 0)
         assert index.data(MATCH_ROLE) == made.report.figures.match == model.verdict_of(candidate).match
         assert f"{100 * candidate.score.iou_exact:.2f} %" in index.data(Qt.ItemDataRole.ToolTipRole)
+        assert f"{100 * made.report.figures.match:.1f} %" in index.data(Qt.ItemDataRole.AccessibleTextRole)
     figures = assembled(shown.candidate, session.document.fabrication, session.document.target).report.figures
     match, flat = f"{100 * figures.match:.1f} %", f"{100 * figures.flat_match:.1f} %"
     assert match != f"{100 * shown.candidate.match:.1f} %"

@@ -119,7 +119,7 @@ def test_that_both_figures_of_a_trimmed_design_stay_apart(trimmed: MainWindow) -
     assert f"trimmed match {100 * trim.iou:.1f} %" in trimmed.facts.text() and f"match {whole}" in trimmed.facts.text()
     model = trimmed.gallery.view.model_
     assert [entry.candidate for entry in model.entries] == list(trimmed.session.document.candidates)
-    card = str(model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleTextRole))
+    card = str(model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleDescriptionRole))
     assert f"sIoU {100 * candidate.score.siou:.2f} %" in card and f"Trimmed: IoU {100 * trim.iou:.2f} %" in card
     trimmed.resize(1000, 640)
     QApplication.processEvents()

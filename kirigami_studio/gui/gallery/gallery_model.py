@@ -161,7 +161,7 @@ class GalleryModel(QAbstractListModel):
             tr(
                 "Design {name}: match {match:.1f} %, {verdict}",
                 name=self.name_of(candidate),
-                match=100 * candidate.match,
+                match=100 * self.match_of(candidate),
                 verdict=self.verdict_of(candidate).words,
             )
         ]
