@@ -453,7 +453,8 @@ class _Work:
 
     def cover_on_pins(self) -> Iterator[Event]:
         """Make covers of pinned sheets from scratch: fits to the target itself fill its notches by chance."""
-        request, tasks = self.request, []
+        request = self.request
+        tasks: list[PinnedCoverTask] = []
         for easy in PINNED_COVER_TURNS:
             filled = notches_filled(request.silhouette, easy, easy)
             if filled is None:
