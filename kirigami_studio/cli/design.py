@@ -474,7 +474,9 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
         }
         for family, (place, one) in first_of_families(result.candidates).items()
     }
-    why = why_covered(result.candidates, result.request.target, result.request.start)
+    request = result.request
+    # What panels of pinned sheets show says little of their pieces.
+    why = None if request.pinned else why_covered(result.candidates, request.target, request.start)
     if why is not None:
         answer["why_covered"] = {"code": why.code, "text": why.text}
     limit = limit_of_run(result)

@@ -97,7 +97,7 @@ COVERS = 2
 COVERED_BELOW = 0.97
 
 #: The same of pinned sheets: notches are filled until the shape turns back by one of these (radians), it is covered
-#: from so many poses by sheets of both hands, and so many covers are kept.  A fit takes half a second, for no arm has to
+#: from so many poses by sheets of both hands, and so many covers are kept.  A fit takes half a second: no arm has to
 #: be reached.
 PINNED_COVER_TURNS, PINNED_COVER_POSES, PINNED_COVERS = (EASY_TURN, math.radians(60.0)), 3, 4
 
@@ -523,7 +523,8 @@ class _Work:
 
     def cover_on_pins(self) -> Iterator[Event]:
         """Make covers of pinned sheets from scratch: fits to the target itself fill its notches by chance."""
-        request, tasks = self.request, []
+        request = self.request
+        tasks: list[PinnedCoverTask] = []
         for easy in PINNED_COVER_TURNS:
             filled = notches_filled(request.silhouette, easy, easy)
             if filled is None:
