@@ -21,10 +21,10 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.findings import Severity
-from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.foundation.words import ShownUnit, mark, tr, tr_n
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import ElidedLabel
-from kirigami_studio.gui.widgets.readable import UNKNOWN, ShownUnit, readable_box, readable_length, readable_range
+from kirigami_studio.gui.widgets.readable import UNKNOWN, readable_box, readable_length, readable_range
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
 
 if TYPE_CHECKING:

@@ -106,8 +106,11 @@ class VerdictBar(QFrame):
 
     def _fit_sentence(self) -> None:
         """Show the worst problem, or the first note, in one line of a wide or low banner or two of a narrow one."""
-        said, metrics, width = self._state.lines[1:2], self.sentence.fontMetrics(), max(self.width() - 16, 1)
+        left, _, right, _ = self._grid.getContentsMargins()
+        width = max(self.width() - left - right - 2 * self.frameWidth() - 2, 1)
+        said, metrics = self._state.lines[1:2], self.sentence.fontMetrics()
         lines = 1 if width >= WIDE or self._low else 2
+        self.sentence.setWordWrap(lines > 1)
         # What is left of a line when words wrap is lost.
         room = width if lines == 1 else round(LINE_USED * lines * width)
         self.sentence.setText(metrics.elidedText(said[0], Qt.TextElideMode.ElideRight, room) if said else "")

@@ -288,7 +288,7 @@ class BoxTool(SketchTool):
         return True
 
     def lay(self) -> None:
-        """Lay the shape in the middle of the target, half as large; arrows and fields move it from there."""
+        """Lay the shape in the middle of the target, half as large; arrows move it from there."""
         placed = self.context.placed
         low, high = (np.full(2, side) for side in (-EMPTY_MM, EMPTY_MM))
         if placed is not None:

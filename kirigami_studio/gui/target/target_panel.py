@@ -17,7 +17,7 @@ from kirigami_studio.gui.target.target_view import TargetView, Tool
 from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton, compact
 from kirigami_studio.gui.widgets.layouts import TOUCH, Part, label, push_button, row, slider
 from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field, names_length
-from kirigami_studio.gui.widgets.readable import TIMES, readable_size
+from kirigami_studio.gui.widgets.readable import TIMES, UNKNOWN, readable_size
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 from kirigami_studio.outlines.reach import reach_of, reach_texts
@@ -359,7 +359,12 @@ class RefineBar(QWidget):
     def show_placed(self, placed: Placed | None) -> None:
         """Show the target's size on the board."""
         self.setEnabled(placed is not None)
+        for field in (self.width_, self.height_):
+            field.setSpecialValueText("" if placed is not None else UNKNOWN)  # at the least value
         if placed is None:
+            for field in (self.width_, self.height_):
+                with QSignalBlocker(field):
+                    field.setValue(field.minimum())
             return
         width, height = self._size = placed.size
         self._ratio = width / height

@@ -19,7 +19,6 @@ from kirigami_studio.gui.widgets.canvas import name_roles
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import BriefTooltips
-from kirigami_studio.gui.widgets.layouts import label
 from kirigami_studio.gui.widgets.message_bar import MessageBar
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.widgets.theme import Palette
@@ -98,7 +97,7 @@ class MainWindow(QMainWindow):
         )
         self.pasting = PasteReader(session, self)
         self.picturing = PictureMaker(self, session, services.cutting)
-        self.heading = label()  #: name of the project, in the middle of the toolbar
+        self.heading = ElidedLabel()  #: name of the project, in the middle of the toolbar
         self.heading.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.heading.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self.presenters = Presenters(
