@@ -58,7 +58,7 @@ class ComparedDesign:
 
 #: What each row under a design is, in their order; "\N{ALMOST EQUAL TO}" stands before estimates.
 TIPS = {
-    "match": mark("Exact IoU with the target."),
+    "match": mark("Exact IoU with the target, of a trimmed design as trimmed."),
     "as_cut": mark("Whether the sheet comes to its angle as cut, or where it jams. \N{ALMOST EQUAL TO}: an estimate."),
     "strain": mark("Largest strain of a connector on the way there. \N{ALMOST EQUAL TO}: an estimate."),
     "time": mark("How long cutting takes; differences in seconds."),

@@ -161,6 +161,9 @@ class PrintDialog(QDialog):
                 else tr("Pieces on pins lie on several sheets: Export writes them with assembly.pdf, at true size.")
             )
             return
+        if self.pages is None:
+            self._show(None)
+            self.about.setText(tr("Laying out the pages …"))
         callbacks: JobCallbacks[PrintedPages] = JobCallbacks(
             self._show, on_failed=lambda sentence, _: self._refuse(sentence)
         )

@@ -142,7 +142,7 @@ class TargetPanel(Card):
         self.facts, self.size_ = ElidedLabel(), label()
         self.notes = label(name="warning", wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.reach, self.start_refusal, self.limit = ElidedLabel(), ElidedLabel(), ElidedLabel()
+        self.reach, self.start_refusal, self.limit = (ElidedLabel(Qt.TextElideMode.ElideRight) for _ in range(3))
         self.reach.setAccessibleDescription(tr("Details that the grid may miss"))
         self.start_refusal.setAccessibleDescription(tr("Why the next run would refuse the start"))
         self.limit.setAccessibleDescription(tr("What no closed sheet shows of the target"))
@@ -168,6 +168,7 @@ class TargetPanel(Card):
         self.view.tool_left.connect(lambda: self.set_tool(Tool.POSE))
         self.view.editing_left.connect(lambda: self.set_editing(False))
         self.view.typed.connect(self._begin_text)
+        self.tools.options.text.returnPressed.connect(self.view.lay_text)
         self.set_editing(False)
         self.show_target(None)
 

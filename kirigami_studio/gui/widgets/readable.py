@@ -54,8 +54,12 @@ def readable_box(width_mm: float, height_mm: float, form: str = ".4g") -> str:
 
 
 def readable_time(seconds: float) -> str:
-    """Seconds up to two minutes, then minutes."""
-    return tr("{seconds:.0f} s", seconds=seconds) if seconds < 120 else tr("{seconds:.1f} min", seconds=seconds / 60)
+    """Seconds up to two minutes, minutes up to two hours, then hours."""
+    if seconds < 120:
+        return tr("{seconds:.0f} s", seconds=seconds)
+    if seconds < 7200:
+        return tr("{seconds:.1f} min", seconds=seconds / 60)
+    return tr("{hours:.1f} h", hours=seconds / 3600)
 
 
 def readable_range(low: float, high: float) -> str:
@@ -64,7 +68,9 @@ def readable_range(low: float, high: float) -> str:
         return readable_time(low)
     if high < 120:
         return tr("{low:.0f}\N{EN DASH}{high:.0f} s", low=low, high=high)
-    return tr("{low:.1f}\N{EN DASH}{high:.1f} min", low=low / 60, high=high / 60)
+    if high < 7200:
+        return tr("{low:.1f}\N{EN DASH}{high:.1f} min", low=low / 60, high=high / 60)
+    return tr("{low:.1f}\N{EN DASH}{high:.1f} h", low=low / 3600, high=high / 3600)
 
 
 def readable_mm(mm: float) -> str:
