@@ -266,7 +266,8 @@ def samples(request: Request, model: Model | None = None) -> tuple[tuple[Sheet, 
     designs: list[Sheet | RatioField] = []
     spare: list[Sheet | RatioField] = []
     shares, of_all = symmetric_shares(request, count), symmetric_shares(request, request.k)
-    for (pose, most), share in zip_longest(of_all, (share for _, share in shares), fillvalue=0):
+    first = [share for _, share in shares] + [0] * (len(of_all) - len(shares))
+    for (pose, most), share in zip(of_all, first, strict=True):
         target = fit_target(request, pose.symmetry)
         drawn = draw(model, target, grid, most, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
         designs += drawn[:share]
