@@ -78,12 +78,11 @@ SEARCH_STARTS = 3
 #: Worth that a sample may lack after its first round and still get a second one, and that a design may lack in the end
 #: and still be finished.  Of 192 samples for 8 drawn shapes none that lacked more than 0.0015 came first in the end,
 #: and finishing added 0.0004 at most.
-MAY_WIN, MAY_COME_FIRST = 0.002, 0.0005
+MAY_WIN, MAY_COME_FIRST = 0.0015, 0.0003
 
-#: Fits from the uniform sheet end once the best two agree in worth within this.
+#: Fits from the uniform sheet end once the best two agree in worth within this.  Until then poses whose fits agree with
+#: the best are tried another way, and others are left behind.
 AGREED = 0.001
-#: A pose is not tried another way when its fits are worth less than the best by more than this.
-LEFT_BEHIND = 0.004
 
 #: Most designs that get the same steps once more in the end: those that may come first.
 FINISHED = 3
@@ -286,7 +285,8 @@ def samples(request: Request, model: Model | None = None) -> tuple[tuple[Sheet, 
     designs: list[Sheet | RatioField] = []
     spare: list[Sheet | RatioField] = []
     shares, of_all = symmetric_shares(request, count), symmetric_shares(request, request.k)
-    for (pose, most), share in zip_longest(of_all, (share for _, share in shares), fillvalue=0):
+    first = [share for _, share in shares] + [0] * (len(of_all) - len(shares))
+    for (pose, most), share in zip(of_all, first, strict=True):
         target = fit_target(request, pose.symmetry)
         drawn = draw(model, target, grid, most, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
         designs += drawn[:share]
@@ -487,7 +487,7 @@ class _Work:
     def _keeps_up(task: GuidedTask, worth: Mapping[GuidedTask, float]) -> bool:
         """Whether the pose of a task has not been left behind by others."""
         own = [each for other, each in worth.items() if other.pose == task.pose]
-        return not own or max(own) >= max(worth.values()) - LEFT_BEHIND
+        return not own or max(own) >= max(worth.values()) - AGREED
 
     def search(self) -> Iterator[Event]:
         """Look for a better design from the best that differ and from scratch."""
