@@ -226,6 +226,11 @@ class Verdict:
         return self.level is Level.READY
 
     @property
+    def refusal(self) -> Problem | None:
+        """The problem for which others are ranked before it, if any; match that is lost counts in the ranking."""
+        return next((problem for problem in self.problems if problem.code not in BEARABLE), None)
+
+    @property
     def is_estimate(self) -> bool:
         """Whether the simulation is still to come."""
         return self.source is Source.ESTIMATE
@@ -386,7 +391,9 @@ def closing_as_cut(
     """The same step by step."""
     kept = None if candidate.trim is None else candidate.trim.kept
     try:
-        sheet = yield from simulate(deployment, plan, width_mm, candidate.final_phi, target, kept)
+        sheet = yield from simulate(
+            deployment, plan, width_mm, candidate.final_phi, target, kept, pose=candidate.final_pose
+        )
     except KirigamiError as error:
         return str(error)
     return sheet.as_cut
@@ -475,9 +482,7 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made, settings)
-    gained = made.report.figures.match - candidate.score.iou_exact
-    refusal = next((problem for problem in found.problems if problem.code not in BEARABLE), None)
-    return CloseLook(refusal, made.as_cut, gained)
+    return CloseLook(found.refusal, made.as_cut, made.report.figures.match - candidate.match)
 
 
 def refused(error: KirigamiError) -> Verdict:

@@ -107,6 +107,7 @@ def order_box(name: str) -> QComboBox:
     box.setObjectName(name)
     box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
     box.setAccessibleName(tr("Sort designs by"))
+    box.setAccessibleDescription(tr("Sort designs by"))  # a reader says the choice itself for the name of a box
     box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
     for order, text, tip in _orders():
         box.addItem(text, order)

@@ -143,9 +143,9 @@ class TargetPanel(Card):
         self.notes = label(name="warning", wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.reach, self.start_refusal, self.limit = ElidedLabel(), ElidedLabel(), ElidedLabel()
-        self.reach.setAccessibleName(tr("Details that the grid may miss"))
-        self.start_refusal.setAccessibleName(tr("Why the next run would refuse the start"))
-        self.limit.setAccessibleName(tr("What no closed sheet shows of the target"))
+        self.reach.setAccessibleDescription(tr("Details that the grid may miss"))
+        self.start_refusal.setAccessibleDescription(tr("Why the next run would refuse the start"))
+        self.limit.setAccessibleDescription(tr("What no closed sheet shows of the target"))
         for warning in (self.reach, self.start_refusal, self.limit):
             warning.setObjectName("warning")
             warning.setVisible(False)

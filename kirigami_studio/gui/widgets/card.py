@@ -32,6 +32,7 @@ class Card(QFrame):
     def __init__(self, title: str, parent: QWidget | None = None, right_inset: int = INSET) -> None:
         super().__init__(parent)
         self.setObjectName("card")
+        self.setAccessibleName(title)
         self.title = label(title, name="cardTitle")
         self.title.setMinimumHeight(30)
         self.header, self.body = row((self.title, 1), spacing=4), column(spacing=8)

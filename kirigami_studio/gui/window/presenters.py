@@ -107,6 +107,7 @@ class Presenters(QObject):
             curves=services.curves,
             grips=services.grips,
             name_of=gallery.view.model_.name_of,
+            estimates=services.estimates,
         )
         self.making = FabricationPresenter(
             pages.fabrication,
