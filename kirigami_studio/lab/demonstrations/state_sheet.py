@@ -118,7 +118,7 @@ class StateSheet(BoardStates):
         return self.files
 
     def all_pages(self, state: str) -> None:
-        """Take one picture of each page for every size and theme, and go back to the page that was shown."""
+        """Picture each page in every size and theme, and go back to the page before."""
         before = self.window.pages.page
         for page in WindowPage:
             self.window.pages.turn(page)
@@ -209,7 +209,7 @@ class StateSheet(BoardStates):
             self.window.messages.close_message()
 
     def board(self) -> None:
-        """The board with its tools, the picker of parts, a photo; and a heart that designs are made for."""
+        """The board with its tools, the picker of parts, a photo, and designs for a heart."""
         window = self.window
         window.services.targeting.clear()
         window.target.set_tool(Tool.POLYGON)
