@@ -117,7 +117,7 @@ def tr_n(one: str, many: str, count: int, /, **values: object) -> str:
 
 
 def fill(text: str, values: Mapping[str, object]) -> str:
-    """Put values into a sentence, lengths in the shown unit, plainly where a format does not fit."""
+    """Put values into a sentence, lengths in the shown unit, plainly where formats do not fit."""
     if ShownUnit.inches:
         text, values = in_inches(text, values)
     try:

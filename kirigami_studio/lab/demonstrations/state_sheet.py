@@ -195,8 +195,10 @@ class StateSheet(BoardStates):
     def busy(self) -> None:
         """A short run, while its designs improve."""
         window = self.window
-        for change in ({"grid": (8, 8)}, {"k": DESIGNS}, {"polish": 20}):
-            window.services.settings.change(**change)
+        settings = window.services.settings
+        settings.change(grid=(8, 8))
+        settings.change(k=DESIGNS)
+        settings.change(polish=20)
         click(window.run.generate)
         model = window.gallery.view.model_
         self.until(lambda: any(one.candidate.polished for one in model.entries), "no design was polished")
