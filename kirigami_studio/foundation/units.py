@@ -1,4 +1,4 @@
-"""Units at the edges: degrees on screen, mm in cut plans and files, mm or inches in the window's sentences."""
+"""Units at the edges: degrees on screen, mm in files, mm or inches in sentences."""
 
 from __future__ import annotations
 

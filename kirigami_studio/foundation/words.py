@@ -53,7 +53,7 @@ _numbers = _Numbers()
 
 
 class ShownUnit:
-    """The unit of all lengths on the screen: mm, or inches by one switch of the window; values stay in mm."""
+    """Unit of all lengths on the screen, mm or inches; values stay in mm."""
 
     inches: ClassVar[bool] = False
 
@@ -117,7 +117,7 @@ def tr_n(one: str, many: str, count: int, /, **values: object) -> str:
 
 
 def fill(text: str, values: Mapping[str, object]) -> str:
-    """Put values into a sentence, lengths in the shown unit; where its format does not fit they are shown plainly."""
+    """Put values into a sentence, lengths in the shown unit, plainly where formats do not fit."""
     if ShownUnit.inches:
         text, values = in_inches(text, values)
     try:

@@ -135,7 +135,7 @@ class FittingLabel(QLabel):
 
 
 class ScrolledWhenShort(QScrollArea):
-    """As high as its content where that fits, scrolled where it does not; as it opens it ends below a whole row."""
+    """As high as its content where that fits; else scrolled, ending below a whole row at first."""
 
     def __init__(self, content: QWidget, least: int) -> None:
         super().__init__()

@@ -118,7 +118,7 @@ class StateSheet(BoardStates):
         return self.files
 
     def all_pages(self, state: str) -> None:
-        """Take one picture of each page for every size and theme, and go back to the page that was shown."""
+        """Picture each page in every size and theme, and go back to the page before."""
         before = self.window.pages.page
         for page in WindowPage:
             self.window.pages.turn(page)
@@ -195,8 +195,10 @@ class StateSheet(BoardStates):
     def busy(self) -> None:
         """A short run, while its designs improve."""
         window = self.window
-        for change in ({"grid": (8, 8)}, {"k": DESIGNS}, {"polish": 20}):
-            window.services.settings.change(**change)
+        settings = window.services.settings
+        settings.change(grid=(8, 8))
+        settings.change(k=DESIGNS)
+        settings.change(polish=20)
         click(window.run.generate)
         model = window.gallery.view.model_
         self.until(lambda: any(one.candidate.polished for one in model.entries), "no design was polished")
@@ -209,7 +211,7 @@ class StateSheet(BoardStates):
             self.window.messages.close_message()
 
     def board(self) -> None:
-        """The board with its tools, the picker of parts, a photo; and a heart that designs are made for."""
+        """The board with its tools, the picker of parts, a photo, and designs for a heart."""
         window = self.window
         window.services.targeting.clear()
         window.target.set_tool(Tool.POLYGON)
