@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache, partial
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
@@ -31,13 +31,15 @@ from kirigami_studio.foundation.errors import ModelError, UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.generator.sampler import one_pose, one_torch_thread, posed, sample_fields
-from kirigami_studio.generator.weights import Model, load_model
+from kirigami_studio.generator.velocity import UNET, backbone_of
+from kirigami_studio.generator.weights import Model, load_model, model_folder
 from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
 from kirigami_studio.lab.baselines.stored import load_generator
 from kirigami_studio.lab.benchmark import paper_tables
 from kirigami_studio.lab.benchmark.match_table import FamilyTable, MethodRow, method_figures, success_share
 from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, mean_of, target_key
-from kirigami_studio.lab.trained_weights import load_weights
+from kirigami_studio.lab.paper_evaluator import released_floor, released_match
+from kirigami_studio.lab.trained_weights import load_weights, variants_about
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -50,8 +52,44 @@ CLASSES = 32
 COMPONENTS = 8
 
 
-#: Steps of the flow in the paper, and of the bundled variants as the program uses them.
+#: Steps of the flow in the paper, which its U-Net takes here, too, and of the other variants as the program uses them.
 PAPER_FLOW_STEPS, BUNDLED_STEPS = 8, 4
+
+
+@dataclass(frozen=True, slots=True)
+class Trained:
+    """How weights were trained, as their record has it.
+
+    Attributes
+    ----------
+    family : str
+        Of the designs; ``mixed`` for a mixture of families.
+    steps, batch : int
+        Optimiser steps done, and designs or targets in each.
+    calls : int
+        Environment calls done, of weights that GRPO aligned; else 0.
+    latent : int
+        Pixels each way into which fields are drawn; 0 where the record lacks it.
+    """
+
+    family: str
+    steps: int
+    batch: int
+    calls: int
+    latent: int
+
+    @classmethod
+    def of(cls, about: Mapping[str, Any]) -> Trained:
+        """Read the record that training wrote; missing numbers are 0."""
+        settings, reached = about.get("settings", {}), about.get("validation", {})
+        shape = settings.get("shape", settings.get("network", {}))
+        return cls(
+            str(settings.get("family", "mixed")),
+            int(reached.get("step", 0)),
+            int(settings.get("batch", 0)),
+            int(reached.get("calls", 0)),
+            int(shape.get("latent", 0)),
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,12 +105,14 @@ class Generator:
     digest : str
         SHA-256 of the weights.
     draw : callable
+    trained : Trained
     """
 
     name: str
     steps: int
     digest: str
     draw: Draw
+    trained: Trained
 
 
 @cache
@@ -88,7 +128,9 @@ def generator_named(source: str) -> Generator:
     """
     if not source.endswith(".safetensors"):
         model = load_model(source)
-        return Generator(source, BUNDLED_STEPS, model.digest, partial(_flow_fields, model))
+        steps = PAPER_FLOW_STEPS if backbone_of(model.network.shape) == UNET else BUNDLED_STEPS
+        trained = Trained.of(variants_about(model_folder())[source])
+        return Generator(source, steps, model.digest, partial(_flow_fields, model), trained)
     path = Path(source)
     try:
         stored = load_generator(path)
@@ -96,9 +138,11 @@ def generator_named(source: str) -> Generator:
         # Weights of a flow lie beside a manifest that names their network.
         model = load_weights(path)
         name = "ot-cfm" if model.variant == "prior" else model.variant
-        return Generator(name, PAPER_FLOW_STEPS, model.digest, partial(_flow_fields, model))
+        trained = Trained.of(variants_about(path.parent)[model.variant])
+        return Generator(name, PAPER_FLOW_STEPS, model.digest, partial(_flow_fields, model), trained)
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
-    return Generator(stored.kind, stored.network.usual_steps, digest, partial(_baseline_fields, stored.network))
+    draw = partial(_baseline_fields, stored.network)
+    return Generator(stored.kind, stored.network.usual_steps, digest, draw, Trained.of(stored.about))
 
 
 def _flow_fields(model: Model, target: Outline, count: int, seed: int, steps: int) -> Sequence[RatioField]:
@@ -203,8 +247,9 @@ class GeneratorRow(MethodRow):
         """The row for people: percentages, the paper's number in brackets."""
         siou, success, time_of_one = ("", "", "")
         if self.paper is not None:
-            siou, success = f"({100 * self.paper.siou:.1f})", f"({100 * (self.paper.success or 0.0):.1f})"
-            time_of_one = f"({self.paper.milliseconds:.0f})"
+            siou = f"({100 * self.paper.siou:.1f})"
+            success = "" if self.paper.success is None else f"({100 * self.paper.success:.1f})"
+            time_of_one = "" if self.paper.milliseconds is None else f"({self.paper.milliseconds:.0f})"
         yield (
             f"  {name:15}{100 * self.siou:7.1f} +- {100 * self.siou_sd:4.1f} {siou:6}{100 * self.iou_exact:8.1f}"
             f"{100 * self.success:9.1f} {success:7}{self.milliseconds:10.1f} {time_of_one:7}"
@@ -216,11 +261,12 @@ class GeneratorRow(MethodRow):
 
 @dataclass(frozen=True, slots=True)
 class GeneratorFigures:
-    """The tables by family, and what their runs share; ``weights`` are SHA-256 by generator."""
+    """The tables by family, and what their runs share; ``weights`` are SHA-256, ``trained`` records, by generator."""
 
     settings: dict[str, object]
     seeds: tuple[int, ...]
     weights: dict[str, str]
+    trained: dict[str, Trained]
     families: dict[str, FamilyTable[GeneratorRow]]
 
     def sentences(self) -> Iterator[str]:
@@ -276,8 +322,10 @@ def measure_generators(
     runs = list(_runs(targets, sources, seeds, settings, sweep))
     store.complete(runs, partial(sampled, classes=FieldClasses.of(reference)), workers, report)
     families = {family: _table([run for run in runs if run.family == family], sources, store) for family in targets}
-    weights = {one.name: one.digest for one in map(generator_named, sources)}
-    return GeneratorFigures(settings.to_json(), tuple(seeds), weights, families)
+    loaded = list(map(generator_named, sources))
+    weights = {one.name: one.digest for one in loaded}
+    trained = {one.name: one.trained for one in loaded}
+    return GeneratorFigures(settings.to_json(), tuple(seeds), weights, trained, families)
 
 
 def sampled(run: SampleRun, classes: FieldClasses) -> Record:
@@ -296,12 +344,15 @@ def sampled(run: SampleRun, classes: FieldClasses) -> Record:
 
 def score_record(field: RatioField, target: Outline) -> Record:
     """What a table keeps of the score of one sample."""
-    (score,) = evaluate_many([deploy(field)], target)
+    sheet = deploy(field)
+    (score,) = evaluate_many([sheet], target)
     return {
         "siou": score.siou,
+        "siou_released": released_match(sheet, target),
         "iou_exact": score.iou_exact,
         "uniform_siou": score.uniform_siou,
         "uniform_iou": score.uniform_iou,
+        "uniform_siou_released": released_floor(*field.ratio.shape, target),
         "feasible": score.feasible,
         "tv": score.tv,
         "tv_log10": score.tv_log10,

@@ -193,6 +193,7 @@ class SnapshotTable:
 
     targets: int
     uniform_siou: float
+    uniform_siou_released: float
     uniform_iou: float
     starts: dict[str, dict[str, tuple[SnapshotRow, ...]]]
 
@@ -334,7 +335,8 @@ def _table(
             beside = None if control is None else _Sampled.of(records[control], start.records, numbers)
             rows.append(_row(run.reward, one.calls, own, start, beside, numbers, seeds))
         starts.setdefault(run.start, {})[run.name] = tuple(rows)
-    return SnapshotTable(targets, mean_of(first, "uniform_siou"), mean_of(first, "uniform_iou"), starts)
+    floors = (mean_of(first, name) for name in ("uniform_siou", "uniform_siou_released", "uniform_iou"))
+    return SnapshotTable(targets, *floors, starts)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

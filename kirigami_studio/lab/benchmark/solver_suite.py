@@ -34,7 +34,7 @@ from kirigami_studio.lab.baselines.solvers import SOLVERS
 from kirigami_studio.lab.benchmark import paper_tables
 from kirigami_studio.lab.benchmark.match_table import FamilyTable, MethodRow, method_figures
 from kirigami_studio.lab.benchmark.run_store import Key, Record, RunStore, mean_of, target_key, values_of
-from kirigami_studio.lab.paper_evaluator import judge
+from kirigami_studio.lab.paper_evaluator import judge, released_floor, released_match
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
@@ -212,8 +212,9 @@ def solved(run: SolverRun, settings: SolverSettings) -> Record:
     Returns
     -------
     record : dict
-        ``siou``, ``iou_exact``, ``siou_masks``, ``uniform_siou``, ``uniform_iou``, ``tv``, ``feasible``, ``candidates``
-        (feasible ones kept), ``evaluations``, ``seconds``.  Without a candidate the scores are 0.
+        ``siou``, ``siou_released``, ``iou_exact``, ``siou_masks``, the uniform sheet's ``uniform_siou``,
+        ``uniform_siou_released`` and ``uniform_iou``, ``tv``, ``feasible``, ``candidates`` (feasible ones kept),
+        ``evaluations``, ``seconds``.  Without a candidate the scores are 0.
     """
     with one_blas_thread():
         if run.method in OWN_METHODS:
@@ -225,14 +226,17 @@ def solved(run: SolverRun, settings: SolverSettings) -> Record:
     floor = evaluate(deploy(RatioField.uniform(*settings.grid)), run.target)
     record: Record = {"candidates": len(designs), "evaluations": evaluations, "seconds": seconds}
     record |= {"uniform_siou": floor.siou, "uniform_iou": floor.iou_exact}
+    record |= {"uniform_siou_released": released_floor(*settings.grid, run.target)}
     if not scores:
-        return {**record, "siou": 0.0, "iou_exact": 0.0, "siou_masks": 0.0, "tv": 0.0, "feasible": False}
+        nothing = dict.fromkeys(("siou", "siou_released", "iou_exact", "siou_masks", "tv"), 0.0)
+        return {**record, **nothing, "feasible": False}
     best = max(range(len(scores)), key=lambda index: _worth(scores[index]))
     score = scores[best]
     masks = rasterise(designs[best].outline(0.0)), rasterise(run.target.points)
     return {
         **record,
         "siou": score.siou,
+        "siou_released": released_match(designs[best], run.target),
         "iou_exact": score.iou_exact,
         "siou_masks": mask_siou(*masks)[0],
         "tv": score.tv,

@@ -4,42 +4,67 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from kirigami_studio.generator.weights import digest_of, variants
 from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
-from kirigami_studio.lab.benchmark.report.cells import Figures, beside, interval, points, share, spread
+from kirigami_studio.lab.benchmark.report.cells import (
+    EARLIER,
+    Figures,
+    beside,
+    interval,
+    is_earlier,
+    measured,
+    points,
+    rows_of_older_weights,
+    share,
+    spread,
+    start_of,
+)
 
 
-def generator_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
-    """The paper's Table 2: one sample a target, and what other numbers of steps give."""
+def generator_section(suites: Sequence[Figures], pictures: dict[str, bytes]) -> Iterator[str]:
+    """The paper's Table 2: one sample a target, and what other numbers of steps give; one suite after the other."""
     yield "## Table 2: conditional generators"
     yield ""
     yield (
-        f"One sample a target, 10 x 10; seeds {', '.join(map(str, figures['seeds']))}; distance and Inception-style "
-        f"score (IS) of {figures['settings']['k']} samples a target. The score's classes are "
-        f"{figures['settings']['classes']} centres of training fields, as the paper does not name its features: "
-        "it compares our rows with each other only. "
-        "`ot-cfm`, `diffusion`, `cgan` and `cvae` were trained here (below); the others are bundled. "
-        "`kirigami-studio benchmark generators`"
+        "One sample a target, 10 x 10. The classes of the Inception-style score (IS) are "
+        f"{suites[0]['settings']['classes']} centres of training fields, as the paper does not name its features: "
+        "it compares rows of one table only. `ot-cfm`, `diffusion`, `cgan` and `cvae` were trained here (below); the "
+        "others are bundled. `paper` is the paper's prior, and `paper-...` are its GRPO rewards, trained as the [model "
+        "card](../resources/models/MODEL_CARD.md#paper) says. `kirigami-studio benchmark generators`"
     )
+    for figures in suites:
+        yield from _generator_tables(figures, pictures)
+    yield ""
+
+
+def _generator_tables(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
+    """The tables of one call of the suite, by family."""
+    shared = (
+        f"seeds {', '.join(map(str, figures['seeds']))}; distance and IS of {figures['settings']['k']} samples a target"
+    )
+    notes = []
     if older := rows_of_older_weights(figures["weights"]):
-        yield ""
-        yield (
+        notes.append(
             f"Measured before the bundled weights were trained anew: {', '.join(older)}. "
             "The model card has the figures of those that are bundled now."
         )
+    if is_earlier(figures):
+        notes.append(EARLIER)
     for family, table in figures["families"].items():
         yield ""
-        yield f"{family.capitalize()}, {table['targets']} targets"
+        yield " ".join((f"{family.capitalize()}, {table['targets']} targets; {shared}.", *notes))
         yield ""
-        yield "| | steps | sIoU | 95 % | exact IoU | success | ms a sample | TV | distance | IS |"
-        yield "|---|---|---|---|---|---|---|---|---|---|"
-        yield f"| uniform sheet | | {share(table['uniform_siou'])} | | {share(table['uniform_iou'])} | | | | | |"
+        yield "| | steps | sIoU | 95 % | as released | exact IoU | success | ms a sample | TV | distance | IS |"
+        yield "|---|---|---|---|---|---|---|---|---|---|---|"
+        yield (
+            f"| uniform sheet | | {share(table['uniform_siou'])} | | {measured(table.get('uniform_siou_released'))} | "
+            f"{share(table['uniform_iou'])} | | | | | |"
+        )
         for name, row in table["rows"].items():
             paper = row["paper"] or {}
             yield (
                 f"| {name} | {row['steps']} | {spread(row)}{beside(paper, 'siou')} | "
-                f"{interval(row['siou_interval'])} | {share(row['iou_exact'])} | "
-                f"{share(row['success'])}{beside(paper, 'success')} | "
+                f"{interval(row['siou_interval'])} | {measured(row.get('siou_released'))} | "
+                f"{share(row['iou_exact'])} | {share(row['success'])}{beside(paper, 'success')} | "
                 f"{row['milliseconds']:.0f}{beside(paper, 'milliseconds', 1.0, 0)} | {row['tv']:.2f} | "
                 f"{row['distance']:.3f} | {row['inception']:.2f} |"
             )
@@ -53,13 +78,6 @@ def generator_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[
             pictures[name] = LineChart("network evaluations of a sample", "sIoU (%)", curves, logarithmic=True).svg()
             yield ""
             yield f"![sIoU against network evaluations of a sample, {family}]({name})"
-    yield ""
-
-
-def rows_of_older_weights(measured: Mapping[str, str]) -> list[str]:
-    """Return the bundled variants whose weights are no longer those that were measured, by SHA-256."""
-    bundled = {name: digest_of(name) for name in variants()}
-    return [name for name, digest in measured.items() if bundled.get(name, digest) != digest]
 
 
 def grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
@@ -75,22 +93,30 @@ def grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
         f"|d log10 x| of neighbours, *distance* as in Table 2 with {settings['k']} samples. "
         "`kirigami-studio benchmark grpo RUN ...`"
     )
+    if is_earlier(figures):
+        yield ""
+        yield f"{EARLIER} What GRPO made of the `paper` that is bundled now is in Table 2."
     for family, table in figures["families"].items():
         for start, runs in table["starts"].items():
             yield ""
-            yield f"{family.capitalize()}, {table['targets']} targets, from the {start}"
+            began = start_of(start, next(iter(figures["training"][start].values())))
+            yield f"{family.capitalize()}, {table['targets']} targets, from {began}"
             yield ""
             yield (
-                "| run | calls | sIoU | 95 % | over start | over control | exact IoU | success | TV | TV over control "
-                "| log | distance |"
+                "| run | calls | sIoU | 95 % | as released | over start | over control | exact IoU | success | TV | "
+                "TV over control | log | distance |"
             )
-            yield "|---|---|---|---|---|---|---|---|---|---|---|---|"
+            yield "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+            yield (
+                f"| uniform sheet | | {share(table['uniform_siou'], 2)} | | "
+                f"{measured(table.get('uniform_siou_released'), 2)} | | | {share(table['uniform_iou'], 2)} | | | | | |"
+            )
             yield _grpo_row("start", next(iter(runs.values()))[0])
             for name, rows in runs.items():
                 yield _grpo_row(name, rows[-1])
     for start, training in figures["training"].items():
         yield ""
-        yield f"Trained from the {start}: {_trained(training)}."
+        yield f"Trained from {start_of(start, next(iter(training.values())))}: {_trained(training)}."
     yield from _made_table(figures)
     for place, start in enumerate(next(iter(figures["families"].values()))["starts"], 1):
         for family, table in figures["families"].items():
@@ -110,7 +136,8 @@ def _grpo_row(name: str, row: Figures) -> str:
     over_start, over_control = row["over_start"], row["over_control"]
     return (
         f"| {name} | {row['calls']} | {spread(row, 2)}{beside(paper, 'siou', digits=2)} | "
-        f"{interval(row['siou_interval'])} | {points(over_start, 'siou')} | {points(over_control, 'siou')} | "
+        f"{interval(row['siou_interval'])} | {measured(row.get('siou_released'), 2)} | "
+        f"{points(over_start, 'siou')} | {points(over_control, 'siou')} | "
         f"{share(row['iou_exact'], 2)} | {share(row['success'])} | {row['tv']:.2f}{beside(paper, 'tv', 1.0, 2)} | "
         f"{points(over_control, 'tv', 1.0)} | {row['tv_log10']:.3f} | {row['distance']:.3f} |"
     )

@@ -7,7 +7,7 @@ same files give the same report.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,7 +19,8 @@ from kirigami_studio.lab.benchmark.report.generators import generator_section, g
 from kirigami_studio.lab.benchmark.report.sheets import as_cut_section, shapes_section
 from kirigami_studio.lab.benchmark.report.solvers import best_of_k_section, grid_sweep_section, solver_section
 
-#: Where the suites wrote into the folder.
+#: Where the suites wrote into the folder; solvers and generators of further calls lie beside, such as in
+#: ``solvers-more/solvers.json``.
 SOLVERS, GENERATORS = Path("solvers/solvers.json"), Path("generators/generators.json")
 SAMPLES = Path("generators/benchmark-samples.png")
 GRPO, BEST_OF_K = Path("grpo/grpo.json"), Path("solvers/best-of-k.json")
@@ -80,16 +81,24 @@ def made_from(folder: Path) -> Report:
         if machine is not None:
             lines += [f"Measured on {machine['processor']}, {machine['cores']} cores, {machine['software']}.", ""]
         opening = len(lines)
-        lines += beside_paper_section(*(_read(folder / name) for name in (SOLVERS, GENERATORS, GRPO)))
-        for name, section in SECTIONS:
+        logs = {path.parent.name: _log(path) for path in sorted((folder / TRAINING).glob("*/log.jsonl"))}
+        solvers, generators = _suites(folder, SOLVERS), _suites(folder, GENERATORS)
+        lines += beside_paper_section(solvers, generators, _read(folder / GRPO), falling(logs))
+        if solvers:
+            lines += solver_section(solvers, pictures)
+        for name, section in ((BEST_OF_K, best_of_k_section), (GRID_SWEEP, grid_sweep_section)):
             figures = _read(folder / name)
             if figures is not None:
                 lines += section(figures, pictures)
-            if name == GENERATORS and (folder / SAMPLES).exists():
-                pictures[SAMPLES.name] = (folder / SAMPLES).read_bytes()
-                title = "Three samples of each generator for a structured target, left, and a Sobol one"
-                lines += [f"![{title}]({SAMPLES.name})", ""]
-        logs = {path.parent.name: _log(path) for path in sorted((folder / TRAINING).glob("*/log.jsonl"))}
+        if generators:
+            lines += generator_section(generators, pictures)
+        if generators and (folder / SAMPLES).exists():
+            pictures[SAMPLES.name] = (folder / SAMPLES).read_bytes()
+            title = "Three samples of each generator of the first table for one target of each of its families"
+            lines += [f"![{title}]({SAMPLES.name})", ""]
+        aligned = _read(folder / GRPO)
+        if aligned is not None:
+            lines += grpo_section(aligned, pictures)
         if logs:
             told = {name: _read(folder / TRAINING / name / ABOUT) for name in logs}
             about = {name: found for name, found in told.items() if found is not None}
@@ -110,16 +119,13 @@ def made_from(folder: Path) -> Report:
     return Report("\n".join(lines) + "\n", pictures)
 
 
-#: Sections by the files that they are made from, in order.
-SECTIONS: tuple[tuple[Path, Callable[[Figures, dict[str, bytes]], Iterator[str]]], ...] = (
-    (SOLVERS, solver_section),
-    (BEST_OF_K, best_of_k_section),
-    (GRID_SWEEP, grid_sweep_section),
-    (GENERATORS, generator_section),
-    (GRPO, grpo_section),
-)
 OPENING = (
     "# The paper's experiments",
+    "",
+    "*sIoU* is how much of a target a design covers in the pose that fits best, nothing left out: overlap by union. "
+    "*As released* is the same as the paper's authors measure it in their released code, which drops what leaves the "
+    "design's picture. *Uniform sheet* is the floor: a sheet whose ratios are all 1, which is no design at all. It "
+    "has most of the match already, and more of it as released, so a row says only how far it is above that floor.",
     "",
     "Written by `kirigami-studio benchmark report --runs FOLDER --out FILE.md` from the JSON in the folder beside it.",
     "Numbers in brackets are the paper's.",
@@ -127,6 +133,18 @@ OPENING = (
     "*Success*: sIoU of 0.85 or more and a feasible design. Times are processor times of one core of a shared machine.",
     "",
 )
+
+
+def falling(logs: Mapping[str, Sequence[Mapping[str, float]]]) -> frozenset[str]:
+    """Training runs whose match on structured validation targets ended below its first value."""
+    name = "structured_iou"
+    return frozenset(run for run, log in logs.items() if log and log[-1].get(name, 0.0) < log[0].get(name, 0.0))
+
+
+def _suites(folder: Path, name: Path) -> list[Figures]:
+    """Figures of every call of a suite, those of the plain folder first."""
+    paths = sorted(folder.glob(f"{name.parent}*/{name.name}"))
+    return [figures for figures in map(_read, paths) if figures is not None]
 
 
 def _read(path: Path) -> Figures | None:

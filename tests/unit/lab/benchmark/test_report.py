@@ -13,7 +13,7 @@ from PIL import Image
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
-from kirigami_studio.lab.benchmark.report.generators import rows_of_older_weights
+from kirigami_studio.lab.benchmark.report.cells import rows_of_older_weights
 from kirigami_studio.lab.benchmark.report.whole import made_from
 
 SVG = "{http://www.w3.org/2000/svg}"
