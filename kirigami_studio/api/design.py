@@ -372,12 +372,12 @@ class Design:
 
     @property
     def iou(self) -> float:
-        """Exact IoU of the polygons; of a trimmed design that of what is left, of one on pins that of its lattice."""
+        """Exact IoU of the polygons: of the trimmed ones, and of the lattice of a design on pins."""
         return self.candidate.match
 
     @property
     def match(self) -> float:
-        """IoU that window and command line show: of the pieces of a design on pins, which are made, else ``iou``."""
+        """IoU that everything shows: of the pieces on pins, which are made for it, else ``iou``."""
         if not self._is_pinned:
             return self.iou
         try:

@@ -217,7 +217,7 @@ class PosedPieces:
         return [rings[0] for rings in self.rings(phi)]
 
     def silhouette(self, phi: float, target: ShapeRings) -> BaseGeometry:
-        """All pieces on pins at an angle, world, without a board behind them: filled but at holes of the target."""
+        """Pieces on pins at an angle, world, without a board: filled but at holes of the target."""
         import shapely
 
         from kirigami_studio.assembly.checks import filled

@@ -61,7 +61,7 @@ def iou_of_area(area: shapely.Polygon, target: Outline) -> float:
 
 
 def shown_area(laid: shapely.Polygon, target: shapely.Polygon) -> BaseGeometry:
-    """What an area over a target counts as: filled, but open where an opening is mostly a hole of the target."""
+    """Area over a target as it counts: filled, open where that is mostly a hole of the target."""
     missing = shapely.difference(shapely.Polygon(target.exterior), target)
     openings = np.array([shapely.Polygon(opening) for opening in laid.interiors], dtype=object)
     mostly = shapely.area(shapely.intersection(openings, missing)) > 0.5 * shapely.area(openings)
@@ -70,7 +70,7 @@ def shown_area(laid: shapely.Polygon, target: shapely.Polygon) -> BaseGeometry:
 
 
 def pose_of_area(area: shapely.Polygon, target: Outline, near: Similarity | None = None) -> tuple[float, Similarity]:
-    """Exact IoU of an area in its best pose, and that pose: frame of the area to frame of the target.
+    """Exact IoU of an area in its best pose, and that pose: from its frame to the target's.
 
     Outer rings alone do not tell how a face on a disc is turned: of all turns the one counts at which holes match too.
     Symmetric shapes have several poses that are as good: then the one that is found from ``near`` on uphill.

@@ -1,4 +1,4 @@
-"""Corners that are left to trimmed panels: hinges, pins and joints are where two panels still have one.
+"""Corners that are left to trimmed panels: hinges are where two panels still have one.
 
 Trim, cut plan, pieces and exported linkages ask here, so that none of them has a hinge that another one has lost.
 """

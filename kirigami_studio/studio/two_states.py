@@ -84,7 +84,7 @@ def shown_match(candidate: Candidate, as_cut: AsCut | None) -> float:
 
 
 def shown_flat_match(candidate: Candidate, as_cut: AsCut | None) -> float | None:
-    """The same of the flat design with its start; None where the sheet is trimmed: its edge is cut off."""
+    """The same of the flat design with its start; None where its edge is trimmed off."""
     if as_cut is not None and as_cut.of_pieces:
         return as_cut.flat_iou
     return match_of_start(candidate.sheet) if candidate.trim is None else None

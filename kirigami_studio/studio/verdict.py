@@ -229,7 +229,7 @@ class Verdict:
 
     @property
     def refusal(self) -> Problem | None:
-        """The problem for which others are ranked before it, if any; match that is lost counts in the ranking."""
+        """The problem for which others are ranked before it, if any; lost match is none."""
         return _refusal(self.problems)
 
     @property

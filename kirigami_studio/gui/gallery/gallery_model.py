@@ -256,7 +256,7 @@ class GalleryModel(QAbstractListModel):
             self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 
     def as_cut_of(self, candidate: Candidate) -> AsCut | None:
-        """The estimate of a design as cut, as far as there is one, or what was found when it was made."""
+        """Findings on a design as cut, estimated or made, as far as there are any."""
         return self._as_cut.get(candidate)
 
     def match_of(self, candidate: Candidate) -> float:
@@ -452,7 +452,7 @@ def _place_of(entries: list[Entry], candidate: Candidate | None) -> int:
 
 
 def described(candidate: Candidate, name: str, as_cut: AsCut | None = None) -> str:
-    """Describe a candidate in words, with what is known of it as cut, for tooltips and screen readers."""
+    """Describe a candidate, with its findings as cut, for tooltips and screen readers."""
     score = candidate.score
     values = {"name": name, "siou": 100 * score.siou, "iou_exact": 100 * score.iou_exact}
     lines = [

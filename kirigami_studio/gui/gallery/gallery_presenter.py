@@ -141,7 +141,7 @@ class GalleryPresenter(QObject):
 
     @property
     def _pieces_known(self) -> bool:
-        """Whether pieces of a design were put together since the run: their match is shown, and ranked by."""
+        """Whether pieces of a design were put together: their match is shown, and ranked by."""
         return any(
             verdict.as_cut is not None and verdict.as_cut.of_pieces for verdict in self._estimates.verdicts.values()
         )
@@ -152,7 +152,7 @@ class GalleryPresenter(QObject):
         self._view.model_.set_as_cut(estimates.found, estimates.material, estimates.verdicts)
 
     def _show_judged(self) -> None:
-        """A verdict was made: cards have it at once; those of sheets change places with the next estimate."""
+        """Show a new verdict; cards of sheets change places with the next estimate."""
         if self._pieces_known:
             self._show_estimates(self._estimates.found)
             return

@@ -161,12 +161,12 @@ class AsCutEstimates(QObject):
 
     @property
     def found(self) -> dict[Candidate, AsCut]:
-        """All that is known of designs as they are cut now; verdicts that were made overrule estimates."""
+        """Findings on designs as they are cut now; verdicts that were made overrule estimates."""
         made = {candidate: one.as_cut for candidate, one in self.verdicts.items() if one.as_cut is not None}
         return {**self.known, **made}
 
     def as_cut_of(self, candidate: Candidate) -> AsCut | None:
-        """What is known of one design as it is cut now."""
+        """Findings on one design as it is cut now."""
         settings, verdict = self._verdicts.get(candidate, (None, None))
         made = None if verdict is None else verdict.as_cut
         if made is not None and settings == one_sheet(cut_for(self._session.document, candidate)):

@@ -621,7 +621,7 @@ class LayoutView(Canvas):
             self._paint_second(painter, transform)
 
     def _compare_cut(self, target: Outline) -> Mismatch | None:
-        """Find the areas of the sheet as cut, in the pose of its match, once for a sheet and an angle."""
+        """Find the areas of the sheet as cut, in the pose of its match."""
         sheet, made = self._cut, self._made
         if sheet is None or made is None:
             return None

@@ -62,7 +62,7 @@ def mismatch(
 
 
 def mismatch_of_area(target: ShapeRings, area: Polygon) -> Mismatch:
-    """Compare an area over its target, as its match is measured: filled, but open at holes of the target."""
+    """Compare an area over its target as its match is measured: filled, open at holes."""
     from kirigami_studio.evaluate.siou import shown_area
 
     wanted = _polygon(target)
@@ -70,7 +70,7 @@ def mismatch_of_area(target: ShapeRings, area: Polygon) -> Mismatch:
 
 
 def mismatch_of_pieces(target: ShapeRings, pieces: PosedPieces, phi: float) -> Mismatch:
-    """Compare pieces on pins at an angle (radians) with their target, as their match is measured."""
+    """Compare pieces on pins at an angle (radians) with their target, by their match."""
     return _differences(_polygon(target), pieces.silhouette(phi, target))
 
 
