@@ -366,7 +366,7 @@ class Shaping:
         return first, second, motion.distance_on_arc(corners[second], corners[first], first // 4, second // 4)
 
     def free(self, index: int, area: BaseGeometry) -> BaseGeometry:
-        """What no other piece needs of an area in the plane of piece ``index``, seen from it.
+        """The part of an area that no other piece of its plane needs, seen from a piece.
 
         Parts below ``LEAST_PART`` are left out.
         """
@@ -380,7 +380,7 @@ class Shaping:
         return together(free)
 
     def _swept_bodies(self, index: int, parts: GeometryArray) -> BaseGeometry:
-        """The area near some parts that other pieces sweep with their clearance, seen from piece ``index``."""
+        """Area near some parts that other pieces sweep with their clearance, seen from a piece."""
         motion = self.motion
         grown = self.options.clearance_mm + BODY_TOLERANCE
         boxes = shapely.bounds(parts) + grown * np.array([-1.0, -1.0, 1.0, 1.0])
