@@ -120,6 +120,11 @@ class GuidedTask:
     way: Way
     hand: int = 0
 
+    @property
+    def pose(self) -> tuple[float, Symmetry | None, int]:
+        """Where it begins, whatever its way."""
+        return self.angle, self.symmetry, self.hand
+
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit the way that the task says."""
         grid, options = request.chosen_grid, request.fit_options

@@ -228,6 +228,11 @@ class Verdict:
         return self.level is Level.READY
 
     @property
+    def refusal(self) -> Problem | None:
+        """The problem for which others are ranked before it, if any; match that is lost counts in the ranking."""
+        return _refusal(self.problems)
+
+    @property
     def is_estimate(self) -> bool:
         """Whether the simulation is still to come."""
         return self.source is Source.ESTIMATE
@@ -388,7 +393,9 @@ def closing_as_cut(
     """The same step by step."""
     kept = None if candidate.trim is None else candidate.trim.kept
     try:
-        sheet = yield from simulate(deployment, plan, width_mm, candidate.final_phi, target, kept)
+        sheet = yield from simulate(
+            deployment, plan, width_mm, candidate.final_phi, target, kept, pose=candidate.final_pose
+        )
     except KirigamiError as error:
         return str(error)
     return sheet.as_cut
@@ -452,9 +459,12 @@ def looking(
     if found.level is Level.FAILS or small is not None:
         return CloseLook(small or found.problems[0])
     as_cut = yield from closing_as_cut(candidate, motion, plan, settings.width_mm, target)
-    new = (one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems)
-    refusal = next((problem for problem in new if problem.code not in BEARABLE), None)
-    return CloseLook(refusal, None if isinstance(as_cut, str) else as_cut)
+    new = [one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems]
+    return CloseLook(_refusal(new), None if isinstance(as_cut, str) else as_cut)
+
+
+def _refusal(problems: Sequence[Problem], bearable: frozenset[str] = BEARABLE) -> Problem | None:
+    return next((problem for problem in problems if problem.code not in bearable), None)
 
 
 def _crowded(plan: CutPlan) -> Note | None:
@@ -479,9 +489,7 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
     found = judge_assembled(candidate, made, settings)
     gained = made.report.figures.match - candidate.match
     cover = candidate.trim is not None and candidate.trim.given_up
-    bearable = BEARABLE_OF_COVERS if cover else BEARABLE
-    refusal = next((problem for problem in found.problems if problem.code not in bearable), None)
-    return CloseLook(refusal, made.as_cut, gained)
+    return CloseLook(_refusal(found.problems, BEARABLE_OF_COVERS if cover else BEARABLE), made.as_cut, gained)
 
 
 def refused(error: KirigamiError) -> Verdict:

@@ -148,8 +148,8 @@ def test_that_pinned_sheets_have_turns_and_no_mirrors() -> None:
 def test_that_even_panels_of_a_pinwheel_are_those_of_the_uniform_pinwheel() -> None:
     model = pinwheel(Sheet.uniform(6, 6), GAP, 1)
     term, nodes = EvenPanels.of(Sheet.uniform(6, 6), model), deploy(model).compact
-    assert term.value(nodes) == pytest.approx(0.0, abs=1e-20) and np.abs(term.pull(nodes)).max() < 1e-15
-    assert EvenPanels.of(Sheet.uniform(6, 6)).value(nodes) > 0.01
+    assert term.at(nodes).value == pytest.approx(0.0, abs=1e-20) and np.abs(term.at(nodes).pull()).max() < 1e-15
+    assert EvenPanels.of(Sheet.uniform(6, 6)).at(nodes).value > 0.01
 
 
 def test_that_what_ratios_prefer_is_the_same_of_a_pinwheel_as_of_its_folded_field() -> None:
