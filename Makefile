@@ -17,7 +17,7 @@ QUICK_TESTS = $(shell grep -rLE --include='test_*.py' 'torch|distributed|PySide6
 
 CATALOGUES := $(patsubst %.po,%.mo,$(wildcard resources/locale/*/LC_MESSAGES/*.po))
 
-.PHONY: help setup run test test-all test-durations fuzz soak pinned prints checks readers quick lint bench consumers demo states pairs pictures shapes figures notebook \
+.PHONY: help setup run test test-all test-durations fuzz soak pinned prints checks readers quick lint bench consumers demo states pairs pictures shapes gallery figures notebook \
   animation site site-serve messages package release clean
 .DEFAULT_GOAL := help
 
@@ -42,6 +42,7 @@ help:
 	@echo "make pairs   make the bundled designs from one shape to another: resources/pairs"
 	@echo "make pictures  make the pictures of README, guide and tutorials with the program"
 	@echo "make shapes  make docs/pictures/shapes.png: three states of the first design for every library silhouette"
+	@echo "make gallery  write the pages and pictures of docs/gallery, and design what is missing"
 	@echo "make figures  draw the figures of docs/mathematics.md"
 	@echo "make animation  play and record two minutes of use: docs/pictures/session.mp4"
 	@echo "make notebook  play docs/first-design.ipynb and keep what its cells show"
@@ -63,6 +64,8 @@ COMPILE := import sys; from babel.messages import mofile, pofile; \
 # pip would compile everything on one core, which takes as long as all the rest; Python compiles what is left out here
 # when it is needed.  As pip does, this goes on past files that are no Python: templates that come with PySide.
 INSTALL := $(BIN)/python -m pip install -q --no-compile -c packaging/constraints-cpu.txt
+# A path, and no import hook, so that type checkers and editors find the program.
+EDITABLE := --config-settings editable_mode=compat -e
 SELDOM_USED := tests|_inductor|_dynamo|onnx|sympy|networkx|mypy|pip|pygments|mpmath
 $(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system_libraries.sh
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
@@ -70,7 +73,7 @@ $(STAMP): pyproject.toml setup.py packaging/constraints-cpu.txt packaging/system
 	sh packaging/system_libraries.sh & libraries=$$!; \
 	{ test -x $(BIN)/python || $(PYTHON) -m venv .venv; } \
 	  && $(INSTALL) --retries 1 --extra-index-url $(TORCH_INDEX) torch \
-	  && $(INSTALL) -e '.[test,lint]' \
+	  && $(INSTALL) $(EDITABLE) '.[test,lint]' \
 	  && { $(BIN)/python -m compileall -qq -j 0 -x '/($(SELDOM_USED))/' .venv/lib || true; }; made=$$?; \
 	  wait $$libraries && exit $$made
 	@touch $@
@@ -170,11 +173,9 @@ demo: setup
 	$(BIN)/kirigami-studio design heart --k 8 --out out/heart
 
 states: setup
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states-200 --scale 2
 	for language in en de; do for scale in 1 2; do \
-	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.page_states \
-	    --language $$language --scale $$scale --out out/pages-$$language-$$scale || exit 1; done; done
+	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet \
+	    --language $$language --scale $$scale --out out/states-$$language-$$scale || exit 1; done; done
 
 pairs: setup
 	$(BIN)/python packaging/make_pairs.py
@@ -209,6 +210,9 @@ shapes: setup
 	  --picture out/shapes.png --out out/shapes.json
 	cp out/shapes.png docs/pictures/shapes.png
 
+gallery: setup
+	$(BIN)/python packaging/make_gallery.py
+
 figures: setup
 	$(BIN)/python -m kirigami_studio.lab.demonstrations.mathematics_figures --out docs/pictures/mathematics
 
@@ -220,7 +224,7 @@ notebook: setup $(DOCS_STAMP)
 
 # MkDocs and what it needs, and what plays notebooks; the tests build the site too.
 $(DOCS_STAMP): $(STAMP)
-	$(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt -e '.[docs]'
+	$(BIN)/python -m pip install -q -c packaging/constraints-cpu.txt $(EDITABLE) '.[docs]'
 	@touch $@
 
 site: setup $(DOCS_STAMP)

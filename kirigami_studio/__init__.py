@@ -9,16 +9,20 @@ The names in ``__all__`` are the Python API, told in ``docs/python-api.md``; eac
 """
 
 import importlib
+from difflib import get_close_matches
 
 __version__ = "0.1.0"
 
 _MODULES = {
     "api.target": ("Target", "load_target", "target_names"),
-    "api.design": ("Sheet", "decode", "Design", "score", "siou", "Cuts", "Pieces", "Exported"),
+    "api.design": ("Sheet", "decode", "Design", "score", "siou", "Cuts", "Pieces", "Exported", "share"),
     "api.designs": ("Designs", "design", "load_project", "machine_names", "material_names"),
     "api.parts": ("ExportedParts", "Parts", "design_parts", "load_parts"),
     "api.simulation": ("Simulation",),
     "api.checked_file": ("CheckedFile", "check"),
+    "evaluate.feasibility": ("Feasibility",),
+    "evaluate.score": ("Score",),
+    "studio.verdict": ("Verdict",),
     "pipeline.events": ("Progress",),
     "foundation.errors": ("KirigamiError",),
 }
@@ -28,7 +32,9 @@ __all__ = sorted(_HOMES)
 
 def __getattr__(name: str) -> object:
     if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        near = get_close_matches(name, __all__, 1)
+        meant = f". Did you mean: {near[0]!r}?" if near else ""
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{meant}")
     value = getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
     globals()[name] = value
     return value

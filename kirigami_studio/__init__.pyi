@@ -17,6 +17,7 @@ if not CHECKED_FROM_INSIDE:
     from kirigami_studio.api.design import Sheet as Sheet
     from kirigami_studio.api.design import decode as decode
     from kirigami_studio.api.design import score as score
+    from kirigami_studio.api.design import share as share
     from kirigami_studio.api.design import siou as siou
     from kirigami_studio.api.designs import Designs as Designs
     from kirigami_studio.api.designs import design as design
@@ -31,5 +32,8 @@ if not CHECKED_FROM_INSIDE:
     from kirigami_studio.api.target import Target as Target
     from kirigami_studio.api.target import load_target as load_target
     from kirigami_studio.api.target import target_names as target_names
+    from kirigami_studio.evaluate.feasibility import Feasibility as Feasibility
+    from kirigami_studio.evaluate.score import Score as Score
     from kirigami_studio.foundation.errors import KirigamiError as KirigamiError
     from kirigami_studio.pipeline.events import Progress as Progress
+    from kirigami_studio.studio.verdict import Verdict as Verdict

@@ -337,11 +337,37 @@ def add_desktop_files(folder: Path) -> None:
     for name, place in desktop_files().items():
         (share / place).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(name, share / place)
+    for place, content in shell_files(folder / "kirigami-studio").items():
+        (share / place).parent.mkdir(parents=True, exist_ok=True)
+        (share / place).write_text(content, encoding="utf-8")
     about = share / "metainfo" / METAINFO
     about.write_text(dated(about.read_text(encoding="utf-8")), encoding="utf-8")
     for name in ("install.sh", "README.txt"):
         shutil.copy(linux / name, folder)
     shutil.copy(ROOT / "LICENSE", folder)
+
+
+def shell_files(program: Path) -> dict[str, str]:
+    """Completion and manual page of the frozen program, by their places below ``share``."""
+    places = {"bash": "bash-completion/completions/kirigami-studio", "zsh": "zsh/site-functions/_kirigami-studio"}
+    printed = {
+        place: subprocess.run([program, "completion", shell], capture_output=True, text=True, check=True).stdout
+        for shell, place in places.items()
+    }
+    return printed | {"man/man1/kirigami-studio.1": manual()}
+
+
+def manual() -> str:
+    """The manual page, made of the parser by argparse-manpage."""
+    from argparse_manpage.manpage import Manpage
+
+    from kirigami_studio.cli import parser
+
+    parser.has_lab = lambda: False  # as in the frozen program
+    data = {"project_name": "Kirigami Studio", "version": version(), "manual_title": "Kirigami Studio"}
+    page = str(Manpage(parser.build_parser(), _data=data))
+    # A line that begins with an extension is no macro; those of troff that lack capitals have two letters.
+    return re.sub(r"(?m)^\.(?=[a-z0-9]{3})", r"\\&.", page)
 
 
 def dated(text: str) -> str:

@@ -17,7 +17,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from version import ROOT, ReleaseError, changes, file_names, version
+from version import ROOT, ReleaseError, changes, file_names, unreleased, version
 
 PACKAGING = ROOT / "packaging"
 ENVIRONMENT = ROOT / "build" / "release-env"
@@ -91,6 +91,17 @@ def write_sums(out: Path, names: Sequence[str]) -> None:
     (out / "SHA256SUMS").write_text("".join(sums), encoding="ascii")
 
 
+def write_notes(out: Path) -> Path:
+    """Write what the changelog says of the version, or of what is not released yet, as the notes of the release."""
+    try:
+        said = changes(version())[1]
+    except ReleaseError:
+        said = unreleased()
+    notes = out / f"kirigami-studio-{version()}-notes.md"
+    notes.write_text(f"# Kirigami Studio {version()}\n\n{said}\n", encoding="utf-8")
+    return notes
+
+
 def make(out: Path) -> None:
     """All steps, in order."""
     names = file_names(version())
@@ -101,7 +112,7 @@ def make(out: Path) -> None:
     install(python, "--retries", "1", "--extra-index-url", TORCH_INDEX, "torch")
     install(python, str(out / names["wheel"]))
     try_out(python)
-    install(python, "pyinstaller")
+    install(python, "pyinstaller", "argparse-manpage")
     subprocess.run([str(python), str(PACKAGING / "bundle.py"), "--out", str(out)], check=True)
     folder = ROOT / "build" / "bundle" / "dist"
     if sys.platform == "darwin":
@@ -117,7 +128,7 @@ def make(out: Path) -> None:
     else:
         try_out(python, "--program", f"'{folder / 'kirigami-studio' / 'kirigami-studio'}'")
         subprocess.run([str(python), str(PACKAGING / "linux" / "deb.py"), "--out", str(out)], check=True)
-    write_sums(out, list(names.values()))
+    write_sums(out, [*names.values(), write_notes(out).name])
 
 
 def main() -> int:

@@ -42,6 +42,8 @@ PICTURES = {"guide": "resources/guide", "guide/de": "resources/guide/de", "model
 #: Made from the parser of the command line.
 COMMANDS = "command-line-options.md"
 LINK = re.compile(r"(?P<picture>!?)\[(?P<text>[^\]\n]*)\]\((?P<place>[^)\s#]*)(?P<anchor>#[^)\s]*)?\)")
+#: ``<!-- gallery: pairs -->`` stands for the pictures of a folder of ``docs/gallery``, each leading to its page.
+GALLERY = re.compile(r"^<!-- gallery: (?P<folder>[\w-]+) -->$", re.MULTILINE)
 #: ``<!-- README.md: Install -->`` stands for the text below that heading of the README.
 INCLUDED = re.compile(r"^<!-- (?P<file>[\w./-]+\.md): (?P<heading>[^>]+) -->$", re.MULTILINE)
 FORMULA = re.compile(r'<(?P<tag>span|div) class="arithmatex">\\[(\[](?P<tex>.*?)\\[)\]]</(?P=tag)>', re.DOTALL)
@@ -84,8 +86,9 @@ def on_files(files: Files, *, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Take in sections of other documents, and lead links to the site's pages."""
+    """Take in sections of other documents and galleries, and lead links to the site's pages."""
     whole = INCLUDED.sub(lambda found: _led(_section(found["file"], found["heading"]), found["file"], page), markdown)
+    whole = GALLERY.sub(lambda found: _gallery(found["folder"]), whole)
     return _led(whole, source_of(page.file.src_uri), page)
 
 
@@ -144,6 +147,19 @@ def _section(file: str, heading: str) -> str:
     if found is None:
         raise PluginError(f"{file} has no heading {heading.strip()!r}.")
     return found[2]
+
+
+def _gallery(folder: str) -> str:
+    """Pictures of a folder of pages to share, of a page beside ``gallery``."""
+    pages = sorted((REPOSITORY / "docs" / "gallery" / folder).glob("*.html"))
+    if not pages:
+        raise PluginError(f"docs/gallery/{folder} has no pages: run 'make gallery'.")
+    shown = (
+        f'<a href="gallery/{folder}/{page.name}"><img src="gallery/{folder}/{page.stem}.png" alt="" loading="lazy">'
+        f"{page.stem.replace('-', ' ').capitalize()}</a>"
+        for page in pages
+    )
+    return '<div class="gallery">\n' + "\n".join(shown) + "\n</div>"
 
 
 def _mathml(tex: str, block: bool) -> str:

@@ -44,10 +44,16 @@ def changes(wanted: str, root: Path = ROOT) -> tuple[str, str]:
     said = text[sections[0].end() : end].strip()
     if not said:
         raise ReleaseError(f"the section of {wanted} in CHANGELOG.md is empty")
-    unreleased = re.search(r"^## UNRELEASED\s*$(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)
-    if unreleased is not None and unreleased[1].strip():
+    if unreleased(root):
         raise ReleaseError(f"CHANGELOG.md still has entries under UNRELEASED; move them to {wanted}")
     return sections[0][2], said
+
+
+def unreleased(root: Path = ROOT) -> str:
+    """Entries of the changelog that no version has yet."""
+    text = (root / "CHANGELOG.md").read_text(encoding="utf-8")
+    found = re.search(r"^## UNRELEASED\s*$(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)
+    return "" if found is None else found[1].strip()
 
 
 def file_names(wanted: str, system: str = platform.system(), machine: str = platform.machine()) -> dict[str, str]:

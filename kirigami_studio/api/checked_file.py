@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kirigami_studio.api.design import Design
+from kirigami_studio.api.values import read_only
 from kirigami_studio.export.file_record import FileRecord
 from kirigami_studio.studio.checking import Checked, checked
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class CheckedFile(Checked):
     """Content of a cut file.

@@ -18,7 +18,7 @@ from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.settings import NamedSetting, settings_of
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.settings.design import DesignChange, DesignChoices
-from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.settings.fabrication import CutChange, FabricationSettings
 
 #: What the keywords of a search, and those of a sheet and its cuts, are settings of.
 SEARCH = (DesignChoices, StartShape, SecondTarget)
@@ -31,6 +31,13 @@ class SearchKeywords(DesignChange, total=False):
     start_weight: float
     also_phi: float | None
     also_weight: float | None
+
+
+class CutKeywords(CutChange, total=False):
+    """Types of the keywords of a plan of cuts."""
+
+    hinge_mm: Mapping[int, float] | None
+    removed: Sequence[int] | None
 
 
 def keywords_of(*kinds: type) -> dict[str, NamedSetting]:
@@ -162,6 +169,19 @@ def connectors(numbers: Sequence[int]) -> list[int]:
     if isinstance(numbers, str) or not isinstance(numbers, (Sequence, np.ndarray)):
         raise UsageError("api.not_connectors", value=reprlib.repr(numbers))
     return [number("removed", one, whole=True) for one in numbers]
+
+
+def panel_numbers(name: str, numbers: Sequence[int]) -> tuple[int, ...]:
+    """Numbers of panels as Python's own.
+
+    Raises
+    ------
+    UsageError
+        No sequence of whole numbers.
+    """
+    if isinstance(numbers, str) or not isinstance(numbers, (Sequence, np.ndarray)):
+        raise UsageError("api.not_panels", name=name, value=reprlib.repr(numbers))
+    return tuple(number(name, one, whole=True) for one in numbers)
 
 
 def number(name: str, value: object, *, whole: bool = False) -> Any:

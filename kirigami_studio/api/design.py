@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeAlias, Unpack
+from typing import TYPE_CHECKING, Any, TypeAlias, Unpack, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -22,16 +22,20 @@ from shapely.geometry import Polygon
 
 from kirigami_studio.api.choices import (
     CUTS,
+    CutKeywords,
     checked_choices,
     connector_widths,
     connectors,
     explicit_docstring,
     explicit_signature,
     keywords_of,
+    number,
+    panel_numbers,
 )
-from kirigami_studio.api.pictures import cuts_picture, states_picture
+from kirigami_studio.api.pictures import cuts_picture, plot_sheet, states_picture
 from kirigami_studio.api.simulation import Simulation
 from kirigami_studio.api.target import Target, TargetLike, load_target
+from kirigami_studio.api.values import at_angles, read_only
 from kirigami_studio.assembly.pieces import Assembly
 from kirigami_studio.assembly.posed_pieces import PosedPieces
 from kirigami_studio.evaluate.candidate import Candidate, Origin
@@ -62,6 +66,7 @@ from kirigami_studio.lattice import sheet as lattice_sheet
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet_files import read_sheet, sheet_json, sheet_of_json
+from kirigami_studio.mechanics.closing import CLOSED, STEPS
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.candidate_edits import set_label
 from kirigami_studio.project.document import Document
@@ -70,7 +75,8 @@ from kirigami_studio.project.labels import cleaned_name
 from kirigami_studio.project.store import CUT_FILES, SUFFIX, load, save
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, is_pinned, with_choices
-from kirigami_studio.studio.as_cut import AsCut, simulated
+from kirigami_studio.studio.as_cut import AsCut, Leading, simulated
+from kirigami_studio.studio.assembling import assembled
 from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.file_kinds import FILE_KINDS
 from kirigami_studio.studio.making import (
@@ -88,21 +94,29 @@ from kirigami_studio.studio.making import (
     written,
     written_pieces,
 )
+from kirigami_studio.studio.two_states import shown_match
 from kirigami_studio.studio.verdict import Level, Verdict, judge_assembled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 #: Files that hold a project, whose chosen design is meant.
 PROJECTS = (SUFFIX, *CUT_FILES)
 #: Files that need no planned cuts.
 PICTURES = tuple(kind.extension for kind in FILE_KINDS if not kind.cuts)
+#: Extension of pages to share.
+PAGE = ".html"
 #: Colours of the levels of a verdict, on white and on black.
 LEVELS = {Level.READY: "#30a46c", Level.CARE: "#d9730d", Level.FAILS: "#e5484d"}
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Sheet:
     """One sheet at every angle phi, from pi (flat) to 0 (closed again).
 
-    Lengths are in unit cells, angles in radians.
+    Lengths are in unit cells, angles in radians.  Nodes, panels, voids, area and porosity take angles of any shape S,
+    too: their arrays then have that shape in front.
 
     In a notebook it shows itself flat, half open and closed.
 
@@ -124,17 +138,20 @@ class Sheet:
         """(rows, columns) of voids."""
         return self.deployment.sheet.grid
 
-    def nodes(self, phi: float = 0.0) -> FloatArray:
+    def nodes(self, phi: npt.ArrayLike = 0.0) -> FloatArray:
         """Positions of all nodes: (N, 2)."""
-        return self.deployment.nodes(phi)
+        found: FloatArray = at_angles(self.deployment.nodes, phi)
+        return found
 
-    def panels(self, phi: float = 0.0) -> FloatArray:
+    def panels(self, phi: npt.ArrayLike = 0.0) -> FloatArray:
         """Corners of the panels, counter-clockwise: (m + 1, n + 1, 4, 2)."""
-        return self.deployment.panels(phi)
+        found: FloatArray = at_angles(self.deployment.panels, phi)
+        return found
 
-    def voids(self, phi: float = 0.0) -> FloatArray:
+    def voids(self, phi: npt.ArrayLike = 0.0) -> FloatArray:
         """Corners of the voids: (m, n, 4, 2)."""
-        return self.deployment.voids(phi)
+        found: FloatArray = at_angles(self.deployment.voids, phi)
+        return found
 
     def outline(self, phi: float = 0.0) -> FloatArray:
         """The boundary (L, 2), counter-clockwise, the first vertex not repeated."""
@@ -156,13 +173,23 @@ class Sheet:
         """The silhouette's picture (size, size), row 0 on top; the longer side fills it."""
         return rasterise(self.outline(phi), size)
 
-    def area(self, phi: float = 0.0) -> float:
-        """Area of panels and voids together, unit cells squared."""
-        return self.deployment.area(phi)
+    @overload
+    def area(self, phi: float = ...) -> float: ...
+    @overload
+    def area(self, phi: npt.ArrayLike) -> FloatArray: ...
+    def area(self, phi: npt.ArrayLike = 0.0) -> float | FloatArray:
+        """Area of panels and voids together, unit cells squared; (S,) for angles (S,)."""
+        found: float | FloatArray = at_angles(self.deployment.area, phi)
+        return found
 
-    def porosity(self, phi: float = 0.0) -> float:
-        """Share of that area that is voids."""
-        return Porosity.of(self.deployment).at(phi)
+    @overload
+    def porosity(self, phi: float = ...) -> float: ...
+    @overload
+    def porosity(self, phi: npt.ArrayLike) -> FloatArray: ...
+    def porosity(self, phi: npt.ArrayLike = 0.0) -> float | FloatArray:
+        """Share of that area that is voids; (S,) for angles (S,)."""
+        found: float | FloatArray = at_angles(Porosity.of(self.deployment).at, phi)
+        return found
 
     def feasibility(self, phi: float = 0.0) -> Feasibility:
         """Whether no quad is inverted and nothing touches or overlaps on the way from flat to phi.
@@ -283,6 +310,7 @@ def _read(path: Path) -> lattice_sheet.Sheet:
     return candidate.final_sheet
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Design:
     """A sheet for a target: what a run found, a project holds, or :meth:`Sheet.for_target` made.
@@ -344,8 +372,23 @@ class Design:
 
     @property
     def iou(self) -> float:
-        """Exact IoU of the polygons; of a trimmed design that of what is left."""
+        """Exact IoU of the polygons; of a trimmed design that of what is left, of one on pins that of its lattice."""
         return self.candidate.match
+
+    @property
+    def match(self) -> float:
+        """IoU that window and command line show: of the pieces of a design on pins, which are made, else ``iou``."""
+        if not self._is_pinned:
+            return self.iou
+        try:
+            made = assembled(self.candidate, self.document.fabrication, self.target.outline)
+        except (FabricationError, UsageError):  # which making them explains
+            return self.iou
+        return shown_match(self.candidate, made.as_cut)
+
+    @property
+    def _is_pinned(self) -> bool:
+        return is_pinned(self.document.fabrication)
 
     @property
     def tv(self) -> float:
@@ -455,7 +498,7 @@ class Design:
     plan_cuts.__signature__ = explicit_signature(plan_cuts, keywords_of(*CUTS), over=True)  # type: ignore[attr-defined]
     plan_cuts.__doc__ = explicit_docstring(plan_cuts, *CUTS, over=True)
 
-    def make_pieces(self, **choices: Any) -> Pieces:
+    def make_pieces(self, **choices: Unpack[CutChange]) -> Pieces:
         """Make the pieces of two layers on pins, or of a print; options as :meth:`plan_cuts`.
 
         Raises
@@ -482,11 +525,47 @@ class Design:
             raise UsageError("api.no_pieces_on_pins", construction=wanted["construction"])
         return Pieces(self, request, pieces_of(request))
 
-    def simulate(self, **cuts: Any) -> Simulation:
-        """Close the sheet on the connectors of its cuts; takes what :meth:`plan_cuts` takes."""
-        return self.plan_cuts(**cuts).simulate()
+    def simulate(
+        self,
+        *,
+        hold: Sequence[int] = (),
+        move: Sequence[int] = (),
+        end: float = CLOSED,
+        steps: int = STEPS,
+        young_gpa: float | None = None,
+        **cuts: Unpack[CutKeywords],
+    ) -> Simulation:
+        """Close the sheet on the connectors of its cuts.
 
-    def export(self, path: str | os.PathLike[str], **cuts: Any) -> Exported:
+        Parameters
+        ----------
+        hold, move, end, steps, young_gpa : optional
+            As in :meth:`Cuts.simulate`.
+        **cuts : settings of a sheet and its cuts
+            Those of :meth:`plan_cuts`.
+        """
+        return self.plan_cuts(**cuts).simulate(hold=hold, move=move, end=end, steps=steps, young_gpa=young_gpa)
+
+    def plot(self, ax: Axes | None = None, *, phi: float | None = None) -> Axes:
+        """Draw the panels, or the pieces, over the target with Matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Those to draw on; the current ones unless given.
+        phi : float, radians, optional
+            The target angle unless given.
+
+        Raises
+        ------
+        UsageError
+            Matplotlib, which the extra ``plot`` brings, is not installed.
+        """
+        angle, pieces = self._angle(phi), self._small_pieces
+        rings = self.panels(angle) if pieces is None else pieces.outlines(angle)
+        return plot_sheet(ax, rings, self.target.outline.rings, self.name)
+
+    def export(self, path: str | os.PathLike[str], **cuts: Unpack[CutKeywords]) -> Exported:
         """Write a cut file or a picture, by its extension; takes what :meth:`plan_cuts` takes.
 
         Parameters
@@ -510,11 +589,12 @@ class Design:
         goal = Path(path)
         find_writer(goal)
         if cuts or goal.suffix.lower() not in PICTURES:
+            given: Mapping[str, Any] = cuts
             deciding = {
-                name: cuts[name] for name in ("construction", "material", "machine") if cuts.get(name) is not None
+                name: given[name] for name in ("construction", "material", "machine") if given.get(name) is not None
             }
             if is_pinned(with_choices(self.document.fabrication, deciding)):
-                return self.make_pieces(**cuts)._written(Output(goal))
+                return self.make_pieces(**given)._written(Output(goal))
             return self.plan_cuts(**cuts).export(goal)
         return Exported((export(picture_job(CutRequest.of(self.document)), goal),))
 
@@ -540,11 +620,12 @@ class Design:
     def __repr__(self) -> str:
         rows, columns = self.grid
         told = "" if self.feasible else ", not feasible"
-        return f"<Design {self.name} for {self.target.name!r}: {rows} x {columns} voids, IoU {self.iou:.4f}{told}>"
+        iou = f"{'lattice ' if self._is_pinned else ''}IoU {self.iou:.4f}"  # nothing is made to be named
+        return f"<Design {self.name} for {self.target.name!r}: {rows} x {columns} voids, {iou}{told}>"
 
     def _repr_svg_(self) -> str:
         rows, columns = self.grid
-        figures = [f"IoU {self.iou:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
+        figures = [f"IoU {self.match:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
         details = "  ·  ".join(figures if self.feasible else [*figures, "not feasible"])
         heading = f"{self.name}  ·  {self.target.name}"
         return states_picture(self.posed, self.target.outline.rings, heading, details, self._small_pieces)
@@ -619,6 +700,28 @@ def _design_of_sheet(deployment: Deployment, target: TargetLike | None, phi: flo
     return Design(set_label(document, 0, cleaned_name(name), "").document if name else document)
 
 
+def share(design: Design, path: str | os.PathLike[str], **cuts: Unpack[CutKeywords]) -> Exported:
+    """Write a design as a page to share: one .html file that moves in every browser.
+
+    Parameters
+    ----------
+    design : Design
+    path : path
+        It ends with ``.html``.
+    **cuts : settings of a sheet and its cuts
+        Those of :meth:`Design.plan_cuts`; the project's unless given.
+
+    Raises
+    ------
+    ExportError, FabricationError, UsageError
+        Another extension, a place that cannot be written, or a sheet that cannot be cut.
+    """
+    goal = Path(path)
+    if goal.suffix.lower() != PAGE:
+        raise UsageError("api.not_a_page_name", path=goal, suffix=PAGE)
+    return design.export(goal, **cuts)
+
+
 def save_project(document: Document, path: str | os.PathLike[str]) -> Path:
     """Write a project file.
 
@@ -645,6 +748,7 @@ def _posed(candidate: Candidate) -> PosedDesign:
     return PosedDesign(motion, candidate.final_pose, candidate.final_phi, candidate.trim)
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Cuts:
     """All cuts of a design in mm, in a material, and what is to be expected of the sheet.
@@ -717,15 +821,53 @@ class Cuts:
         """
         return _judged(self)
 
-    def simulate(self) -> Simulation:
-        """Close the sheet on its connectors; done once.
+    def paths_mm(self) -> dict[str, tuple[FloatArray, ...]]:
+        """Cut paths by layer, as files have them: (P, 2) each, mm, y up, in the order of cutting.
+
+        Arcs are chords of at most 5 micrometres error; a closed path ends at its first point.  Layers are called as in
+        cut files: ``SLITS``, ``EDGE_SLITS``, ``OUTLINE`` and so on.
+        """
+        plan = self.plan
+        return {layer.value: tuple(path.travelled for path in plan.on_layer(layer)) for layer in plan.layers}
+
+    def simulate(
+        self,
+        *,
+        hold: Sequence[int] = (),
+        move: Sequence[int] = (),
+        end: float = CLOSED,
+        steps: int = STEPS,
+        young_gpa: float | None = None,
+    ) -> Simulation:
+        """Close the sheet on its connectors; done once for the same options.
+
+        Parameters
+        ----------
+        hold, move : sequence of int
+            Panels that pins hold, and others that pins lead along the ideal path, by number, row by row from the top
+            left; nothing is gripped unless both are given, and the mean angle is driven.
+        end : float, radians
+            Mean angle to close to.
+        steps : int
+            Equilibria on the way.
+        young_gpa : float, optional
+            Young's modulus; the material's unless given.
 
         Raises
         ------
         MechanicsError
-            Panels that do not hang together.
+            Panels that do not hang together, or no such panels.
+        UsageError
+            Panels to hold without others to lead, an angle that is flat, or too few steps.
         """
-        return _simulated(self)
+        lead = Leading(
+            panel_numbers("hold", hold),
+            panel_numbers("move", move),
+            check_phi(end),
+            number("steps", steps, whole=True),
+            None if young_gpa is None else number("young_gpa", young_gpa),
+        )
+        return _simulated(self, lead)
 
     def export(
         self,
@@ -802,6 +944,7 @@ class Cuts:
         return f'<div>{cuts_picture(self.plan, heading)}<div style="{style}">{chip}{below}</div></div>'
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Pieces:
     """Pieces of a design on pins, in two layers or printed, and what is to be expected of them.
@@ -872,6 +1015,7 @@ class Pieces:
         return f"<Pieces of {self.design.name} in {self.settings.material}: {self.count}, {self.pins} pins, {level}>"
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Exported:
     """Files that were written.
@@ -925,9 +1069,9 @@ def _plan_cuts(design: Design, given: Mapping[str, Any]) -> Cuts:
 
 
 @lru_cache(maxsize=32)
-def _simulated(cuts: Cuts) -> Simulation:
+def _simulated(cuts: Cuts, lead: Leading) -> Simulation:
     request, width = cuts._request, cuts.settings.width_mm
-    found = simulated(request.candidate, cuts.plan, width, request.target, request.deployment)
+    found = simulated(request.candidate, cuts.plan, width, request.target, request.deployment, lead)
     candidate = request.candidate
     posed = PosedDesign(request.deployment, candidate.final_pose, candidate.final_phi, candidate.trim)
     return Simulation(found, posed if found.made is None else posed.laid_over(found.made), width)

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Unpack, overload
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from kirigami_studio.api.choices import (
 from kirigami_studio.api.design import Design, save_project
 from kirigami_studio.api.pictures import Thumbnail, contact_sheet
 from kirigami_studio.api.target import Target, TargetLike, load_target
+from kirigami_studio.api.values import optional_package, read_only
 from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.fabricate.machine import machines
 from kirigami_studio.fabricate.material import library
@@ -37,7 +38,7 @@ from kirigami_studio.pipeline.events import Progress, Result
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
-from kirigami_studio.settings.fabrication import new_settings
+from kirigami_studio.settings.fabrication import StyleName, new_settings
 from kirigami_studio.studio.designing import (
     Tell,
     completed,
@@ -48,10 +49,16 @@ from kirigami_studio.studio.designing import (
     why_covered,
 )
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
 #: Letters of a line of progress; what is left of a longer one before is written over.
 LINE = 78
+#: Columns of a table of designs.
+FIGURES = ("name", "siou", "iou", "tv", "area_cv", "feasible", "symmetry", "trimmed", "family", "given_up")
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Designs(Sequence[Design]):
     """The designs of a project, best first: a sequence, by number, slice or name.
@@ -116,22 +123,20 @@ class Designs(Sequence[Design]):
         return "" if limit is None else limit.text
 
     def table(self) -> list[dict[str, Any]]:
-        """One row of figures for each, for ``pandas.DataFrame`` and the like."""
-        return [
-            {
-                "name": design.name,
-                "siou": design.siou,
-                "iou": design.iou,
-                "tv": design.tv,
-                "area_cv": design.area_cv,
-                "feasible": design.feasible,
-                "symmetry": design.symmetry,
-                "trimmed": design.trimmed,
-                "family": design.family,
-                "given_up": design.given_up,
-            }
-            for design in self
-        ]
+        """One row of figures for each, for tables of every kind."""
+        return [{name: getattr(design, name) for name in FIGURES} for design in self]
+
+    def to_frame(self) -> DataFrame:
+        """The table as a pandas ``DataFrame``, one design a row, by name.
+
+        Raises
+        ------
+        UsageError
+            pandas, which the extra ``pandas`` brings, is not installed.
+        """
+        frame = optional_package("pandas", "pandas").DataFrame(self.table(), columns=list(FIGURES))
+        indexed: DataFrame = frame.set_index("name")
+        return indexed
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the project (.kiri), which window and command line open.
@@ -149,10 +154,10 @@ class Designs(Sequence[Design]):
     @overload
     def __getitem__(self, key: int | str) -> Design: ...
     @overload
-    def __getitem__(self, key: slice) -> tuple[Design, ...]: ...
-    def __getitem__(self, key: int | str | slice) -> Design | tuple[Design, ...]:
+    def __getitem__(self, key: slice) -> Designs: ...
+    def __getitem__(self, key: int | str | slice) -> Design | Designs:
         if isinstance(key, slice):
-            return tuple(self[place] for place in range(*key.indices(len(self))))
+            return self._some(range(len(self))[key])
         if isinstance(key, str):
             names = [label.text for label in self.document.labels]
             if key not in names:
@@ -163,6 +168,19 @@ class Designs(Sequence[Design]):
         except IndexError:  # which also ends loops over a sequence
             raise IndexError(f"design {key} of {len(self)}") from None
         return Design(replace(self.document, chosen=place))
+
+    def _some(self, places: Sequence[int]) -> Designs:
+        """Those at some places, as a project of their own."""
+        whole = self.document
+        some = replace(
+            whole,
+            candidates=tuple(whole.candidates[place] for place in places),
+            chosen=places.index(whole.chosen) if whole.chosen in places else None,
+            marks=tuple(whole.marks[place] for place in places),
+            labels=tuple(whole.labels[place] for place in places),
+            locked=whole.locked if places else frozenset(),
+        )
+        return Designs(some, self.result)
 
     def __iter__(self) -> Iterator[Design]:
         return (self[place] for place in range(len(self)))
@@ -226,7 +244,7 @@ def design(
     width_mm: float | None = None,
     connector_mm: float | None = None,
     kerf_mm: float | None = None,
-    style: str | None = None,
+    style: StyleName | None = None,
     least_panel_mm: float = 0.0,
     progress: bool | Callable[[Progress], object] = False,
     **choices: Unpack[SearchKeywords],
@@ -258,7 +276,8 @@ def design(
     least_panel_mm : float
         Least panel edge and neck that fits keep.
     progress : bool or callable
-        True prints one line that changes; a callable gets every :class:`Progress` (``done``, ``total``, ``message``).
+        True prints one line that changes, in files a line for every tenth; a callable gets every :class:`Progress`
+        (``done``, ``total``, ``message``).
     **choices : settings of a search
         Those of :class:`kirigami_studio.settings.design.DesignChoices`, ``start_weight``, and ``also_phi`` and
         ``also_weight``, angle and weight of the second target.
@@ -333,15 +352,21 @@ def _quietly(progress: Progress) -> None:
 
 
 class _Line:
-    """A line on standard output that is written over."""
+    """Progress on standard output: a line written over, or in files a line for every tenth."""
 
     def __init__(self) -> None:
         self._begun = False
+        self._is_rewritten = sys.stdout.isatty() or "ipykernel" in sys.modules
+        self._tenth = -1
 
     def show(self, progress: Progress) -> None:
-        self._begun = True
-        sys.stdout.write(f"\r{progress.message[:LINE]:<{LINE}}")
-        sys.stdout.flush()
+        if self._is_rewritten:
+            self._begun = True
+            sys.stdout.write(f"\r{progress.message[:LINE]:<{LINE}}")
+            sys.stdout.flush()
+        elif (tenth := 10 * progress.done // max(progress.total, 1)) > self._tenth:
+            self._tenth = tenth
+            sys.stdout.write(f"{progress.message}\n")
 
     def end(self) -> None:
         if self._begun:

@@ -3,31 +3,53 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from shapely import MultiPolygon
 
+from kirigami_studio.api.choices import SearchKeywords
 from kirigami_studio.api.design import save_project
 from kirigami_studio.api.designs import Designs, design
-from kirigami_studio.api.target import Target
+from kirigami_studio.api.target import Target, TargetLike
+from kirigami_studio.api.values import read_only
 from kirigami_studio.export.verification import Verification
 from kirigami_studio.foundation.errors import ProjectError, UsageError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.events import Progress
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import sized
 from kirigami_studio.project.target_parts import parts_as_cut, scale_of, with_part, with_parts
-from kirigami_studio.settings.fabrication import with_choices
+from kirigami_studio.settings.fabrication import CutChange, StyleName, with_choices
 from kirigami_studio.studio.making import ExportedFiles, Output
 from kirigami_studio.studio.part_sheets import exporting_parts, part_names, with_settings
 from kirigami_studio.studio.targets import PartChoice, PieceRead
 from kirigami_studio.studio.verdict import Verdict
 
 
+class RunKeywords(SearchKeywords, total=False):
+    """Types of the keywords of a run."""
+
+    grid: str | tuple[int, int]
+    start: TargetLike
+    also: TargetLike | None
+    trim: bool
+    budget_seconds: float | None
+    material: str | None
+    machine: str | None
+    width_mm: float | None
+    connector_mm: float | None
+    kerf_mm: float | None
+    style: StyleName | None
+    least_panel_mm: float
+    progress: bool | Callable[[Progress], object]
+
+
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Parts(Sequence[Designs]):
     """The parts of one target, each with its designs: a sequence, by number or name.
@@ -50,7 +72,7 @@ class Parts(Sequence[Designs]):
         """Millimetres of the opened sheets for one unit of the drawing, the same for all."""
         return scale_of(self.document)
 
-    def export(self, path: str | os.PathLike[str], **cuts: Any) -> ExportedParts:
+    def export(self, path: str | os.PathLike[str], **cuts: Unpack[CutChange]) -> ExportedParts:
         """Write the chosen designs of all parts: one cut file for each bed of the machine.
 
         Parameters
@@ -102,6 +124,7 @@ class Parts(Sequence[Designs]):
         return f"<Parts: {', '.join(self.names)}>"
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ExportedParts:
     """Files with the sheets of all parts.
@@ -199,7 +222,7 @@ def design_parts(
     stroke: float | None = None,
     threshold: float | None = None,
     fill_holes: bool | None = None,
-    **choices: Any,
+    **choices: Unpack[RunKeywords],
 ) -> Parts:
     """Design a sheet for every piece of a drawing, all to one scale.
 
@@ -223,6 +246,7 @@ def design_parts(
     whole = sized(with_part(whole, largest, replace(first, place=whole.place, fabrication=whole.fabrication)))
     for number, part in enumerate(parts_as_cut(whole)):
         if number != largest and part.target is not None:
-            found = design(part.target, **{**choices, "width_mm": part.fabrication.width_mm}).document
+            choices["width_mm"] = part.fabrication.width_mm
+            found = design(part.target, **choices).document
             whole = with_part(whole, number, replace(found, place=part.place))
     return Parts(whole)

@@ -8,16 +8,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 import numpy as np
 
+from kirigami_studio.api.values import optional_package
 from kirigami_studio.assembly.posed_pieces import PosedPieces
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.picture import PANEL, PANEL_EDGE, TARGET_EDGE, hexadecimal
 from kirigami_studio.export.svg import NAMESPACE, decimals, path_data
 from kirigami_studio.fabricate.cut_plan import CutPlan, Layer
 from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 #: Letters and lines on white or black paper; the curve; where something is too much.
 GREY, LINE, ALARM = "#7a7f87", "#3b82c4", "#e5484d"
@@ -250,6 +255,27 @@ def curves_picture(curves: Sequence[AngleCurve], heading: str, jam_phi: float | 
         left, top = MARGIN + number * step + NUMBERS, MARGIN + 2 * GAP
         _curve(canvas, curve, (left, top), jam_phi)
     return canvas.svg
+
+
+def plot_sheet(ax: Axes | None, rings: Sequence[FloatArray], target: ShapeRings, title: str) -> Axes:
+    """Panels or pieces over a target on the axes of Matplotlib, in one scale, and no numbers.
+
+    Raises
+    ------
+    UsageError
+        Matplotlib is not installed.
+    """
+    collections = optional_package("matplotlib.collections", "plot")
+    axes: Axes = optional_package("matplotlib.pyplot", "plot").gca() if ax is None else ax
+    look = {"facecolors": PANEL_FILL, "edgecolors": PANEL_LINE, "linewidths": 0.5}
+    axes.add_collection(collections.PolyCollection(list(rings), **look), autolim=True)
+    closed = [np.concatenate([ring, ring[:1]]) for ring in as_rings(target)]
+    axes.add_collection(collections.LineCollection(closed, colors=TARGET, linewidths=1.5), autolim=True)
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    axes.set_axis_off()
+    axes.set_title(title)
+    return axes
 
 
 def _curve(canvas: SvgPicture, curve: AngleCurve, corner: tuple[float, float], jam_phi: float | None) -> None:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from kirigami_studio.api.pictures import AngleCurve, curves_picture
+from kirigami_studio.api.values import read_only
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.mechanics.closing import TOLERATED_STRETCH, Closing
@@ -13,6 +16,7 @@ from kirigami_studio.mechanics.loads import Loads, loads
 from kirigami_studio.studio.as_cut import AsCut, SimulatedSheet
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Simulation:
     """A sheet as cut on its way from flat (phi = pi) to phi = 0; arrays have one entry a step.
@@ -55,12 +59,22 @@ class Simulation:
 
     @property
     def torque_nmm(self) -> FloatArray:
-        """Moment (S,), N mm, against the mean angle, elastic: the upper figure."""
-        return self.closing.path.force
+        """Elastic moment (S,), N mm, against the mean angle: the upper figure; NaN with grips."""
+        torque = self.loads.in_plane.torque_nmm
+        return np.full(len(self.phi), np.nan) if torque is None else torque
+
+    @property
+    def displacement_mm(self) -> FloatArray | None:
+        """Way (S,), mm, of the panels that are led; None where the mean angle is driven."""
+        drive = self.closing.path.drive
+        return None if drive.weights.size else drive.displacement
 
     @property
     def force_n(self) -> FloatArray:
-        """Force (S,), N, at the end of a lever as long as a panel, elastic: the upper figure."""
+        """Force (S,), N, elastic: the upper figure.
+
+        At the end of a lever as long as a panel; along their way where panels are led.
+        """
         return self.loads.in_plane.force_n
 
     @property

@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy.typing as npt
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.api.pictures import target_picture
+from kirigami_studio.api.values import read_only
 from kirigami_studio.evaluate.silhouette import RasterFrame, rasterise, rasterise_in_frame
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import UsageError
@@ -21,6 +22,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio.targets import PartChoice, outline_of
 
 
+@read_only
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Target:
     """A silhouette for sheets to show: simple, of area 1 about its centroid, maybe with holes.
@@ -95,7 +97,7 @@ def load_target(
     *,
     name: str | None = None,
     parts: str | None = None,
-    join: str | None = None,
+    join: Literal["union", "bridge", "hull", "tight"] | None = None,
     bridge: float | None = None,
     stroke: float | None = None,
     threshold: float | None = None,

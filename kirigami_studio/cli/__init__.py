@@ -7,12 +7,14 @@ print.
 
 from __future__ import annotations
 
+import argparse
 import os
 import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from kirigami_studio.cli.console import STREAM, sentences_to
 from kirigami_studio.cli.parser import build_parser
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.log import quiet_libraries
@@ -38,7 +40,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = build_parser().parse_args([] if shown else words)
     arguments.shown = shown
     try:
-        code = int(arguments.run(arguments))
+        with sentences_to(None if getattr(arguments, "quiet", False) else "stdout"):
+            code = _run(arguments)
         sys.stdout.flush()
         return code
     except UsageError as error:
@@ -60,6 +63,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         if error.filename:
             return _fail(KirigamiError("cli.file_not_usable", path=error.filename, reason=reason), 1)
         return _fail(KirigamiError("cli.output_not_usable", reason=reason), 1)
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    """Run the command, its input in a file where that is standard input."""
+    if not any(value == STREAM or (isinstance(value, list) and STREAM in value) for value in vars(arguments).values()):
+        return int(arguments.run(arguments))
+    from kirigami_studio.cli.inputs import standard_input
+
+    with standard_input(arguments):
+        return int(arguments.run(arguments))
 
 
 def _replace_missing_streams() -> None:

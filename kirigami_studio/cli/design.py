@@ -86,6 +86,7 @@ from kirigami_studio.studio.making import (
 )
 from kirigami_studio.studio.part_sheets import exporting_parts, folder_name, part_names, placed_layouts, worst_of
 from kirigami_studio.studio.targets import PieceRead
+from kirigami_studio.studio.two_states import shown_match
 from kirigami_studio.studio.verdict import RANK, Verdict, refused
 
 #: Files of a design, by their roles.
@@ -455,7 +456,11 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
     if result.best.trim is not None:
         answer["trimmed_iou"] = result.best.trim.iou
     answer["families"] = {
-        family.value: {"place": place, "match": one.match, "given_up": one.given_up}
+        family.value: {
+            "place": place,
+            "match": shown_match(one, _as_cut_in(result, one)),
+            "given_up": one.given_up,
+        }
         for family, (place, one) in first_of_families(result.candidates).items()
     }
     why = why_covered(result.candidates, result.request.target, result.request.start)
@@ -475,22 +480,30 @@ def candidates_json(result: Result, construction: Construction) -> list[dict[str
     ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
-        candidate_json(candidate, ranking, result.as_cut.get(candidate))
+        candidate_json(candidate, ranking, _as_cut_in(result, candidate))
         | {"rank_reason": reason.text, "group": group, **kind}
         for candidate, reason, group in zip(candidates, reasons, groups, strict=True)
     ]
 
 
-def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None) -> dict[str, object]:
+def _as_cut_in(result: Result, candidate: Candidate) -> AsCut | None:
+    """How a design of a run does as cut, as far as that is known."""
+    found = result.as_cut.get(candidate)
+    return found if isinstance(found, AsCut) else None
+
+
+def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: AsCut | None = None) -> dict[str, object]:
     """One entry of ``candidates``: a sheet file with score and provenance.
 
-    ``as_cut`` is how it does as cut, null where its cuts cannot be planned.
+    ``match`` is the one that everything shows: of pieces put together, of the trimmed or the whole sheet.  ``as_cut``
+    is how it does as cut, null where its cuts cannot be planned.
     """
     even = candidate.score.evenness
     entry: dict[str, object] = {
         **sheet_json(candidate.sheet),
         "grid": list(candidate.sheet.grid),
         **candidate.score.to_json(),
+        "match": shown_match(candidate, as_cut),
         "seed": candidate.seed,
         "index": candidate.index,
         "polished": candidate.polished,
@@ -499,7 +512,7 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
         "least_feature_mm": even.least_feature_mm(ranking.width_mm),
         "at_limit": even.at_limit,
         "cuttable": ranking.cuttable(candidate),
-        "as_cut": as_cut.to_json() if isinstance(as_cut, AsCut) else None,
+        "as_cut": None if as_cut is None else as_cut.to_json(),
         "family": candidate.family.value,
         "outline": [ring.tolist() for ring in _silhouette(candidate)],
     }

@@ -7,9 +7,10 @@ import math
 import sys
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from kirigami_studio.cli.console import print_json, say
+from kirigami_studio.cli.console import STREAM, is_quiet, print_json, remark, say, sentences_to, standing_in
 from kirigami_studio.cli.option_types import check_name
 from kirigami_studio.export.animation import FRAMES, write_animation
 from kirigami_studio.export.cut_motion import CutMotion
@@ -72,12 +73,32 @@ def material_settings(arguments: argparse.Namespace) -> FabricationSettings:
     if note is not None:
         in_layers = is_pinned(settings) or is_backed(settings)
         said = tr("note: {text}", text=note.text) if in_layers else f"{tr('warning')}: {note.text}"
-        sys.stderr.write(f"kirigami-studio: {said}\n")
+        remark(said)
     return settings
 
 
 def export(arguments: argparse.Namespace) -> int:
-    """Write cut or picture files of a project, verify the cut files, and report on them."""
+    """Write cut or picture files of a project, verify the cut files, and report on them.
+
+    With ``--out -`` the file is standard output, and the report goes to standard error.
+    """
+    if arguments.out != STREAM:
+        return _export(arguments)
+    if arguments.json or arguments.all:
+        raise UsageError("export.output_is_the_file")
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / f"cut.{arguments.format}"
+        arguments.out = str(path)
+        with standing_in(path), sentences_to(None if is_quiet() else "stderr"):
+            code = _export(arguments, alone=True)
+        content = path.read_bytes()
+    sys.stdout.flush()
+    sys.stdout.buffer.write(content)
+    return code
+
+
+def _export(arguments: argparse.Namespace, alone: bool = False) -> int:
+    """The same to files; ``alone`` refuses all but one."""
     _check_picture(arguments)
     document = load(arguments.project)
     if arguments.part is not None:
@@ -89,6 +110,8 @@ def export(arguments: argparse.Namespace) -> int:
     settings = overridden(document.fabrication, arguments)
     request = CutRequest.of(document, settings)
     output = Output(Path(arguments.out), "cut" if arguments.all else None, _wants_record(arguments))
+    if alone and (writes_parts(document, output) or request.is_pinned or writes_layers(request, output)):
+        raise UsageError("export.several_files")
     if writes_parts(document, output):
         return _export_parts(with_settings(document, settings), output, as_json=arguments.json)
     angle = None if arguments.at_deg is None else math.radians(arguments.at_deg)

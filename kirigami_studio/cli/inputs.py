@@ -7,18 +7,22 @@ get their answer.
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Generic, TypeVar
+from zipfile import BadZipFile, ZipFile
 
 import numpy as np
 import numpy.typing as npt
 
-from kirigami_studio.cli.console import print_json
+from kirigami_studio.cli.console import STREAM, as_typed, print_json, remark, standing_in
 from kirigami_studio.foundation.arrays import BoolArray
 from kirigami_studio.foundation.errors import KirigamiError, ProjectError, RatioError, UsageError
 from kirigami_studio.foundation.files import opened_file
@@ -26,7 +30,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.sheet_files import SUFFIXES, named_sheet, read_sheet
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.read import PART_READERS, has_parts, read_target, target_files
+from kirigami_studio.outlines.read import BEGINNING, KINDS, PART_READERS, has_parts, read_target, target_files
 from kirigami_studio.outlines.read_image import opened_image
 from kirigami_studio.outlines.silhouettes import names
 from kirigami_studio.outlines.source_file import decoding, read_bytes
@@ -42,6 +46,14 @@ LARGEST_ARCHIVE = 512 * 2**20
 #: What has a chosen design.
 PROJECTS = (PROJECT, *CUT_FILES)
 
+#: Arguments that name an input, which may be standard input.
+INPUTS = (
+    *("targets", "sheets", "inputs", "file", "project", "source", "also", "start", "design", "picture"),
+    *("mask_a", "mask_b"),
+)
+#: Beginnings of arrays and of archives.
+NUMPY, ZIP = b"\x93NUMPY", b"PK"
+
 Value = TypeVar("Value")
 
 
@@ -51,6 +63,68 @@ class Named(Generic[Value]):
 
     name: str
     read: Callable[[], Value]  #: reads and validates it; raises a KirigamiError that names it
+
+
+@contextmanager
+def standard_input(arguments: argparse.Namespace) -> Iterator[None]:
+    """Put the content of standard input into a file wherever an input is ``-``.
+
+    Raises
+    ------
+    UsageError
+        Content of no kind that is read.
+    """
+    named = {name: getattr(arguments, name, None) for name in INPUTS}
+    asked = [name for name, value in named.items() if value == STREAM or (isinstance(value, list) and STREAM in value)]
+    if not asked:
+        yield
+        return
+    # A program without a console has no standard input.
+    content = b"" if sys.stdin is None else sys.stdin.buffer.read(LARGEST_ARCHIVE + 1)
+    if len(content) > LARGEST_ARCHIVE:
+        raise UsageError("archive.too_large", path=STREAM, limit=LARGEST_ARCHIVE >> 20)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / f"stdin{kind_of_content(content)}"
+        path.write_bytes(content)
+        for name in asked:
+            given = named[name]
+            files = [str(path) if one == STREAM else one for one in given] if isinstance(given, list) else str(path)
+            setattr(arguments, name, files)
+        with standing_in(path):
+            try:
+                yield
+            except KirigamiError as error:
+                # Outside nobody knows what the file stands for.
+                fields = {name: as_typed(str(value)) if isinstance(value, (str, Path)) else value
+                          for name, value in error.fields.items()}  # fmt: skip
+                raise type(error)(error.code, **fields) from error
+
+
+def kind_of_content(content: bytes) -> str:
+    """Extension of the kind of file that bytes are.
+
+    Raises
+    ------
+    UsageError
+        Of no kind that is read.
+    """
+    for kind in KINDS:
+        if kind.begins(content[:BEGINNING]):
+            return kind.extensions[0]
+    if content.startswith(NUMPY):
+        return ".npy"
+    if content.startswith(ZIP):
+        try:
+            members = ZipFile(io.BytesIO(content)).namelist()
+        except BadZipFile:
+            members = []
+        return ".npz" if members and all(member.endswith(".npy") for member in members) else PROJECT
+    text = content[:BEGINNING].decode("utf-8-sig", "replace").lstrip()
+    if text.startswith(("{", "[")):
+        return ".json"
+    if "<LightBurnProject" in text:
+        return ".lbrn2"
+    raise UsageError("input.unknown_content")
 
 
 def is_batch(sources: Sequence[str]) -> bool:
@@ -116,7 +190,7 @@ def part_choice(arguments: argparse.Namespace) -> PartChoice | None:
 def warn(name: str, target: Outline) -> list[str]:
     """Print on standard error all that was changed in a target; return it for JSON."""
     for note in target.notes:
-        sys.stderr.write(f"kirigami-studio: {tr('warning')}: {name}: {note}\n")
+        remark(f"{tr('warning')}: {name}: {note}")
     return list(target.notes)
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 from datetime import date
+from importlib import import_module
 from pathlib import Path
 
 from kirigami_studio.cli.console import print_json, say
@@ -46,6 +48,34 @@ def licences(arguments: argparse.Namespace) -> int:
         for one in found:
             say(f"{one.name:32} {one.version:14} {one.licence}")
     return 0
+
+
+def serve(arguments: argparse.Namespace) -> int:
+    """Serve assistants over the Model Context Protocol until they hang up."""
+    code: int = import_module("kirigami_studio.api.mcp_server").serve(Path(arguments.folder))
+    return code
+
+
+def completion(arguments: argparse.Namespace) -> int:
+    """Print what makes a shell complete commands, options and files."""
+    import shtab
+
+    from kirigami_studio.cli.parser import build_parser
+
+    parser = build_parser()
+    _complete_files(parser, shtab.FILE)
+    sys.stdout.write(shtab.complete(parser, arguments.shell) + "\n")
+    return 0
+
+
+def _complete_files(parser: argparse.ArgumentParser, files: object) -> None:
+    """Have texts of every command that are no choices completed as names of files."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for child in action.choices.values():
+                _complete_files(child, files)
+        elif action.nargs != 0 and action.choices is None and action.type is None:
+            action.complete = files  # type: ignore[attr-defined]
 
 
 def parts(arguments: argparse.Namespace) -> int:

@@ -17,11 +17,10 @@ from kirigami_studio.fabricate.strain import StrainFigure, Survival, strain_note
 from kirigami_studio.foundation.errors import MechanicsError, UsageError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, deploy
-from kirigami_studio.mechanics.closing import CLOSED, STEPS, Closing, closing, even_closing
+from kirigami_studio.mechanics.closing import STEPS, Closing, closing
 from kirigami_studio.mechanics.drive import Drive, clamped_ends
 from kirigami_studio.mechanics.equilibrium import EquilibriumPath, follow
-from kirigami_studio.mechanics.estimate import estimate_stretch
-from kirigami_studio.mechanics.gripping import Gripping, find_grips, grips
+from kirigami_studio.mechanics.gripping import Gripping, find_grips
 from kirigami_studio.mechanics.loads import Loads, loads
 from kirigami_studio.mechanics.network_files import NetworkFile, SpringConstants, morpher_drive, read_network
 from kirigami_studio.mechanics.sheet_network import SheetNetwork
@@ -29,18 +28,19 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import (
-    CLOSE_TO,
+    LEAST_STEPS,
+    Leading,
     Overlap,
     Source,
     breaking_phi,
-    estimated_jam,
+    jam_of,
     overlap,
     planned_sheet,
 )
 from kirigami_studio.studio.cutting import plan_sheet
 
 FLAT_DEG = 180.0
-LEAST_STEPS, NETWORK_STEPS = 3, 100
+NETWORK_STEPS = 100
 #: Rows of the table for a person.
 SHOWN_ROWS = 11
 AXES = {"x": (0, 0), "y": (1, 1), "xx": (0, 0), "yy": (1, 1), "xy": (0, 1), "yx": (1, 0)}
@@ -73,24 +73,17 @@ class _Cut:
 
 def _close_sheet(arguments: argparse.Namespace) -> int:
     cut = _cut(arguments)
-    if (arguments.hold is None) != (arguments.move is None):
-        raise UsageError("mechanics.hold_and_move")
-    if arguments.end_deg >= FLAT_DEG:
-        raise UsageError("mechanics.end_angle", angle=arguments.end_deg)
-    end, width, gripping = math.radians(arguments.end_deg), cut.settings.width_mm, None
-    if arguments.hold is not None:
-        drive = grips(cut.deployment, cut.sheet, width, arguments.hold, arguments.move, end, arguments.steps)
-        found = closing(cut.sheet, drive)
-    elif arguments.find_grips:
-        gripping = find_grips(cut.deployment, cut.sheet, width, end, arguments.steps)
+    hold, move = (tuple(panels or ()) for panels in (arguments.hold, arguments.move))
+    lead = Leading(hold, move, math.radians(arguments.end_deg), arguments.steps)
+    width, gripping = cut.settings.width_mm, None
+    if arguments.find_grips and not hold:
+        gripping = find_grips(cut.deployment, cut.sheet, width, lead.end, lead.steps)
         found = gripping.closing
     else:
-        found = closing(cut.sheet, even_closing(cut.sheet, end, arguments.steps))
-    gripped, tolerated = arguments.hold is not None or arguments.find_grips, arguments.tolerance
-    jam, source = math.degrees(found.jam_phi(tolerated)), Source.SIMULATION
-    if _ended_early(found, tolerated):
-        beyond = estimate_stretch(cut.deployment, cut.sheet, width)
-        jam, source = math.degrees(estimated_jam(beyond, tolerated)), Source.ESTIMATE
+        found = closing(cut.sheet, lead.drive(cut.deployment, cut.sheet, width))
+    gripped, tolerated = bool(hold) or arguments.find_grips, arguments.tolerance
+    jams_at, source = jam_of(found, cut.deployment, width, tolerated)
+    jam = math.degrees(jams_at)
     lap = None
     if cut.target is not None:
         jam_phi = found.jam_phi(tolerated)
@@ -170,12 +163,6 @@ def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:
         "stable_deg": np.degrees(found.stable_phi),
         "stretch_at_end_widths": found.stretch[-1],
     }
-
-
-def _ended_early(found: Closing, tolerated: float) -> bool:
-    """Whether the sheet was not driven as far as it would go, so that its jam is unknown."""
-    free = len(found.phi) == found.asked and float(found.stretch.max()) <= tolerated
-    return free and float(found.phi[-1]) > CLOSED + CLOSE_TO
 
 
 def _tell_steps(found: Closing, load: Loads) -> None:

@@ -47,6 +47,7 @@ class SubCommand:
 
 
 JSON = option("--json", action="store_true", help="print JSON on standard output, nothing else")
+QUIET = option("--quiet", action="store_true", help="print nothing but JSON, where that is asked for, and errors")
 (PHI,) = setting_options(DesignChoices, "phi")
 #: What a project that is exported has, unless options say otherwise.
 USUAL = FabricationSettings()
@@ -131,6 +132,10 @@ SCHEDULER = option(
     metavar="ADDRESS",
     help="address of a Dask scheduler, such as tcp://10.0.0.5:8786, whose workers do the work (extra 'cluster')",
 )
+#: Shells whose completion is known.
+SHELLS = ("bash", "zsh", "tcsh")
+#: Kinds of files of text that are a single file.
+TEXT_KINDS = ("svg", "dxf", "lbrn2", "html", "fold", "xml")
 SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("design", "design sheets for a target, rank them and write a cut file", "design:design", (
         option("targets", nargs="+", metavar="TARGET",
@@ -165,6 +170,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio design logo.svg --parts badge,star --join bridge --bridge 2 --out out/logo",
         "kirigami-studio design word.svg --parts all --join each --out out/word",
         "kirigami-studio design masks.npz --k 1 --json",
+        "kirigami-studio design - --k 8 --json < drawing.svg",
         "kirigami-studio design drawings --scheduler tcp://10.0.0.5:8786 --out out/drawings",
     )),
     SubCommand("decode", "print the exact layouts of sheets", "geometry:decode", (
@@ -206,7 +212,9 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("project", help="a .kiri project"),
         option("--out", required=True,
                help="file to write (.dxf .svg .pdf .lbrn2 .png .gif .html .stl .3mf .obj .fold .xml .inp .csv); with "
-                    "--all, a folder"),
+                    "--all, a folder; - for standard output, see --format"),
+        option("--format", choices=TEXT_KINDS, default=TEXT_KINDS[0],
+               help=f"kind of the file that --out - writes to standard output (default {TEXT_KINDS[0]})"),
         option("--all", action="store_true", help="write every file type to the folder and verify the cut files"),
         option("--part", type=name, default=None, metavar="NAME",
                help="of a target of several parts only this one, by its name or number from 1 (default: all of them in "
@@ -228,6 +236,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio export heart.kiri --out heart.dxf --width-mm 80 --connector-mm 0.6",
         "kirigami-studio export heart.kiri --out heart/ --all --profile k40 --paper a4",
         "kirigami-studio export heart.kiri --out hearts.dxf --material card-co2 --copies fit --copy-gap-mm 4",
+        "kirigami-studio export heart.kiri --out - --format dxf | kirigami-studio check -",
         "kirigami-studio export heart.kiri --out heart.lbrn2 --engrave --name 'For Ada'",
         "kirigami-studio export heart.kiri --out half-open.png --as-cut --at-deg 90",
         "kirigami-studio export heart.kiri --out heart.dxf --style round --tabs 4 --hinge-mm 3=0.8 7=1 --remove 12")),
@@ -370,6 +379,15 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
     ), ("kirigami-studio coupon --material film-uv --out coupon.dxf", "kirigami-studio coupon --gap-mm 0.29 0.31")),
     SubCommand("variants", "list the bundled generator variants", "library:variants", (JSON,),
             ("kirigami-studio variants",)),
+    SubCommand("mcp", "serve designing, judging and exporting to an assistant (Model Context Protocol)",
+            "library:serve", (
+        option("--folder", default=".", metavar="DIR",
+               help="folder that holds all files that the assistant reads and writes (default: the current one)"),
+    ), ("kirigami-studio mcp --folder ~/sheets   # extra 'mcp'; stops at the end of its input",)),
+    SubCommand("completion", "print the completion of commands and options for a shell", "library:completion", (
+        option("shell", choices=SHELLS, help="the shell that completes"),
+    ), ("kirigami-studio completion bash > ~/.local/share/bash-completion/completions/kirigami-studio",
+        "kirigami-studio completion zsh > ~/.zfunc/_kirigami-studio")),
 )  # fmt: skip
 
 #: Where the lab has its commands, if it is there: a frozen program comes without.
@@ -416,7 +434,7 @@ def build_parser() -> argparse.ArgumentParser:
             group = _add(commands, first, about_group(first), shown)
             groups[first] = group.add_subparsers(title="commands", metavar="COMMAND", required=True)
         child = _add(groups[first] if second else commands, second or first, command.about, command.examples)
-        for names, settings in command.options:
+        for names, settings in (*command.options, QUIET):
             child.add_argument(*names, **settings)
         # A suite that has --variants must not take another suite's --variant for it.
         child.allow_abbrev = first != "benchmark"

@@ -39,6 +39,7 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import (
     CoverTask,
     GuidedTask,
+    PinnedCoverTask,
     PolishTask,
     SearchTask,
     Task,
@@ -50,6 +51,8 @@ from kirigami_studio.pipeline.tasks import (
 )
 from kirigami_studio.pipeline.variety import worth_a_fit
 from kirigami_studio.polish.continuation import Way, first_angles
+from kirigami_studio.polish.covering import EASY_TURN, notches_filled
+from kirigami_studio.polish.pinwheel import HANDS
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries
 from kirigami_studio.polish.unfolding import unfolded
 from kirigami_studio.settings.design import USUAL_GRID, RimRule
@@ -91,6 +94,11 @@ TRIMMED = 3
 COVERS = 2
 #: They are made in any case where no closed design of a run that was fitted to its end matches better than this.
 COVERED_BELOW = 0.97
+
+#: The same of pinned sheets: notches are filled until the shape turns back by one of these (radians), it is covered
+#: from so many poses by sheets of both hands, and so many covers are kept.  A fit takes half a second, for no arm has
+#: to be reached.
+PINNED_COVER_TURNS, PINNED_COVER_POSES, PINNED_COVERS = (EASY_TURN, math.radians(60.0)), 3, 4
 
 #: Seconds between two signs of life while fits are under way.
 HEARTBEAT = 0.25
@@ -178,6 +186,17 @@ def trimmed_further(
     work = _Work(request, Watch(cancel, time.perf_counter()), _gaining(pool or shared_pool(), request))
     work.found, work.evaluations = list(result.candidates), result.forward_evaluations
     yield from work.trim()
+    return replace(result, candidates=work.ranking.ranked(work.found), forward_evaluations=work.evaluations)
+
+
+def covered_on_pins(
+    result: Result, cancel: Callable[[], bool] = never, pool: Pool | None = None
+) -> Generator[Event, None, Result]:
+    """Add pinned sheets that cover the target, whose panels in its notches are given up."""
+    request = result.request
+    work = _Work(request, Watch(cancel, time.perf_counter()), _gaining(pool or shared_pool(), request))
+    work.found, work.evaluations = list(result.candidates), result.forward_evaluations
+    yield from work.cover_on_pins()
     return replace(result, candidates=work.ranking.ranked(work.found), forward_evaluations=work.evaluations)
 
 
@@ -353,11 +372,11 @@ class RunPhase:
         return Progress(done, total, tr(self.words, done=done, total=total))
 
 
-GUIDING = RunPhase(mark("Fitting from the uniform sheet: {done} of {total} done"), "run.stopped_polishing")
+GUIDING = RunPhase(mark("Fitting: {done} of {total} done"), "run.stopped_polishing")
 POLISHING = RunPhase(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
 SEARCHING = RunPhase(mark("Searching: {done} of {total} done"), "run.stopped_searching")
-FINISHING = RunPhase(mark("Finishing the best: {done} of {total} done"), "run.stopped_polishing")
-COVERING = RunPhase(mark("Covering the shape: {done} of {total} done"), "run.stopped_trimming")
+FINISHING = RunPhase(mark("Finishing: {done} of {total} done"), "run.stopped_polishing")
+COVERING = RunPhase(mark("Covering: {done} of {total} done"), "run.stopped_trimming")
 TRIMMING = RunPhase(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
 
 
@@ -500,14 +519,30 @@ class _Work:
         if not needs_cover(self.request, self.found):
             return
         chosen = worth_a_fit(self.found, self.ranking)[:COVERS]
-        tasks = [CoverTask(candidate) for candidate in chosen]
+        yield from self._covered_by([CoverTask(candidate) for candidate in chosen], COVERS)
+
+    def cover_on_pins(self) -> Iterator[Event]:
+        """Make covers of pinned sheets from scratch: fits to the target itself fill its notches by chance."""
+        request, tasks = self.request, []
+        for easy in PINNED_COVER_TURNS:
+            filled = notches_filled(request.silhouette, easy, easy)
+            if filled is None:
+                continue
+            setting, grid = request.symmetry, request.chosen_grid
+            poses = first_angles(filled.outline, grid, 1, setting, request.start, pinned=True)[:PINNED_COVER_POSES]
+            tasks += [PinnedCoverTask(0, *pose, hand, easy) for pose in poses for hand in HANDS]
+        yield from self._covered_by(tasks, PINNED_COVERS)
+
+    def _covered_by(self, tasks: Sequence[Task], most: int) -> Iterator[Event]:
+        """The best covers that tasks make, as designs of their own."""
         covers: dict[int, Candidate] = {}
         for report in self._carried_out(tasks, COVERING, 0, len(tasks)):
             if isinstance(report, Progress):
                 yield report
             elif report[1].candidate is not None:
                 covers[report[0]] = report[1].candidate
-        for place in sorted(covers):
+        best = sorted(covers, key=lambda place: self.ranking.key(replace(covers[place], index=place)))[:most]
+        for place in sorted(best):
             cover = replace(covers[place], index=self._next_index())
             self.found.append(cover)
             yield CandidateFound(cover.index, cover)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from typing import Any, TypedDict
+from typing import Any, Literal, TypedDict
 
 from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.foundation.errors import AngleError, GridError
@@ -362,13 +362,13 @@ class DesignChange(TypedDict, total=False):
     phi: float
     k: int
     seed: int
-    symmetry: KeptSymmetry | str
-    rim: RimRule | str
+    symmetry: KeptSymmetry | Literal["auto", "none", "mirror", "turn"]
+    rim: RimRule | Literal["free", "even"]
     regular: float
     variant: str
     steps: int
     polish: int
-    prefer: FitPreference | str
+    prefer: FitPreference | Literal["accuracy", "balanced", "regularity", "calm"]
     search: int
 
 

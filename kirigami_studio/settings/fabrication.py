@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, TypedDict
+from typing import Any, Literal, TypeAlias, TypedDict
 
 from kirigami_studio.export.paper import Paper
 from kirigami_studio.export.profile import DxfVersion, find_profile
@@ -489,30 +489,34 @@ class FabricationSettings:
         check(self)
 
 
+#: Connector styles by name.
+StyleName: TypeAlias = Literal["centred", "straight", "round", "teardrop", "arc", "double"]
+
+
 class SheetChange(TypedDict, total=False):
     """Types of values for a sheet and its files; choices may be given by their words."""
 
     width_mm: float
     material: str
     machine: str
-    construction: Construction | str | None
-    fastener: Fastener | str
+    construction: Construction | Literal["one-sheet", "pinned", "backed", "printed"] | None
+    fastener: Fastener | Literal["brad", "m2", "m3", "eyelet", "rivet"]
     pin_mm: float | None
     ear_mm: float | None
     clearance_mm: float | None
     gap_mm: float
     second_material: str
-    board_cut: BoardCut | str
-    held_by: HoldKind | str
-    held_when: HoldWhen | str
+    board_cut: BoardCut | Literal["kiss", "through"]
+    held_by: HoldKind | Literal["none", "magnets", "eyelets", "stitches", "tabs"]
+    held_when: HoldWhen | Literal["open", "flat", "both"]
     magnet_mm: float
     magnet_height_mm: float
-    moved_by: DriveKind | str
+    moved_by: DriveKind | Literal["none", "crank", "servo"]
     connector_mm: float | None
     kerf_mm: float | None
     profile: str
-    dxf_version: DxfVersion | str
-    paper: Paper | str
+    dxf_version: DxfVersion | Literal["R2010", "R12"]
+    paper: Paper | Literal["none", "a4", "letter"]
     markers: bool
     engrave: bool
 
@@ -527,8 +531,8 @@ class FabricationChange(SheetChange, total=False):
 class OptionsChange(TypedDict, total=False):
     """Values for those fields of :class:`CutOptions` that hold for the whole sheet."""
 
-    style: ConnectorStyle | str
-    order: CutOrder | str
+    style: ConnectorStyle | StyleName
+    order: CutOrder | Literal["shortest", "rows", "inside-out", "spread"]
     tabs: int
     tab_mm: float
     copies: int

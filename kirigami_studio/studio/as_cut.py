@@ -17,7 +17,9 @@ import shapely
 
 from kirigami_studio.assembly.backed import BackedSheet
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.siou import iou_of_area
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import iou_of_area, pose_of_area
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.fabricate.centres import bending_lengths, void_hinges
 from kirigami_studio.fabricate.connectors import hinge_widths
@@ -33,7 +35,7 @@ from kirigami_studio.fabricate.slits import SHEET_EDGE, cut_table, sheet_lines
 from kirigami_studio.fabricate.strain import RigidPanels, StrainFigure, Survival, survival, used_up
 from kirigami_studio.fabricate.tiles import TileSizes
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
-from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.lattice.deployment import Deployment, check_phi, deploy
@@ -41,11 +43,13 @@ from kirigami_studio.mechanics.bow_contacts import NONE as NO_CONNECTOR
 from kirigami_studio.mechanics.bow_contacts import Meetings, meetings
 from kirigami_studio.mechanics.closing import (
     CLOSED,
+    STEPS,
     TOLERATED_STRETCH,
     Closing,
     carried_on,
     closing_steps,
     covered_area,
+    even_closing,
     ideal_motion,
 )
 from kirigami_studio.mechanics.connectors import (
@@ -56,8 +60,9 @@ from kirigami_studio.mechanics.connectors import (
     junctions,
     tip_asides,
 )
+from kirigami_studio.mechanics.drive import Drive
 from kirigami_studio.mechanics.estimate import StretchEstimate, estimate_stretch
-from kirigami_studio.mechanics.gripping import SoftMotions
+from kirigami_studio.mechanics.gripping import SoftMotions, grips
 from kirigami_studio.mechanics.path_contacts import contacts_on_way
 from kirigami_studio.mechanics.sheet_network import SheetNetwork, polygons_as_rows, sheet_network
 from kirigami_studio.outlines.outline import Outline
@@ -69,8 +74,12 @@ MPA_PER_GPA = 1e3
 CLOSE_TO = math.radians(1.0)
 #: A connector counts as longer than a straight one above this (mm); coordinates are rounded to a tenth of it.
 LONGER_MM = 1e-3
+#: Fewest equilibria of a closing.
+LEAST_STEPS = 3
 #: A sheet is closed so many times at most, each time with the contacts that the last time showed.
 MOST_CLOSINGS = 4
+#: Of a motion that nobody draws.
+NO_PANELS = CutPanels(PanelLines.of([]), PanelLines.of([]))
 #: The estimate's jam angles below this (radians) are those of contacts that close further: the sheet closes.
 ESTIMATE_CLOSES = math.radians(6.0)
 
@@ -117,6 +126,7 @@ class AsCut:
     strain_limit: float = math.inf
     thinness: float = 0.0
     yields_at: float = 0.0
+    flat_iou: float | None = None  #: Exact IoU of flat pieces with their start; None where there are no pieces
 
     def __post_init__(self) -> None:
         check_phi(self.jam_phi)
@@ -130,6 +140,11 @@ class AsCut:
     def closes(self) -> bool:
         """Whether the sheet comes to the angle that it is meant for."""
         return self.outcome is Outcome.CLOSES
+
+    @property
+    def of_pieces(self) -> bool:
+        """Whether its match is that of pieces put together."""
+        return self.iou is not None and self.flat_iou is not None
 
     @property
     def nearly_closes(self) -> bool:
@@ -187,6 +202,8 @@ class SimulatedSheet:
     width_mm: float  #: Width of the flat sheet
     panels: CutPanels  #: As the cuts leave them, in the frame of the closing's network
     made: Deployment | None = None  #: The sheet that is cut where that is not quite the design
+    #: Lays it where it comes to upon the target, from the network's frame (mm): the pose of its match as cut
+    laid: Similarity | None = None
 
     def stretch_at(self, phi: float) -> FloatArray:
         """Stretch (H,) of the connectors at an angle (radians), in their widths; the last that was found beyond it."""
@@ -203,7 +220,7 @@ class SimulatedSheet:
     def motion(self) -> CutMotion:
         """What pictures and animations show of it."""
         found = self.as_cut
-        return CutMotion(self.closing, self.width_mm, found.jam_phi, found.reached, self.panels, self.made)
+        return CutMotion(self.closing, self.width_mm, found.jam_phi, found.reached, self.panels, self.laid, self.made)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -215,6 +232,7 @@ class Overlap:
     forced: float
     iou_forced: float
     iou_ideal: float
+    laid: Similarity  #: pose (mm to the target's frame) of the first
 
 
 # the sheet as a network -----------------------------------------------------------------------------------------------
@@ -432,13 +450,13 @@ def grips_on_tiles(
     return held, pulled
 
 
-def motion_on_pins(phi: float, iou: float | None = None) -> AsCut:
+def motion_on_pins(phi: float, iou: float | None = None, flat_iou: float | None = None) -> AsCut:
     """Tell how a pinned design moves: all the way to ``phi`` (radians), without strain.
 
-    ``iou`` is that of its checked pieces with the target; without it the motion counts as estimated.
+    Both numbers are those of its checked pieces with target and start; without them the motion counts as estimated.
     """
     source = Source.ESTIMATE if iou is None else Source.SIMULATION
-    return AsCut(0.0, phi, Outcome.CLOSES, 0.0, 0.0, StrainFigure.IN_PLANE, iou, iou, source)
+    return AsCut(0.0, phi, Outcome.CLOSES, 0.0, 0.0, StrainFigure.IN_PLANE, iou, iou, source, flat_iou=flat_iou)
 
 
 def estimated_jam(found: StretchEstimate, tolerated: float = TOLERATED_STRETCH) -> float:
@@ -490,6 +508,65 @@ def estimates(candidates: Iterable[Candidate], settings: FabricationSettings) ->
     return found
 
 
+@dataclass(frozen=True, slots=True)
+class Leading:
+    """How a sheet is closed: gripped panels, how far, in how many steps.
+
+    Attributes
+    ----------
+    hold, move : tuple of int
+        Panels that pins hold, and those that they lead along the ideal path, row by row; nothing is gripped without
+        any, and the mean angle is driven.
+    end : float, radians
+        Mean angle to close to.
+    steps : int
+        Equilibria on the way, the flat sheet among them.
+    young_gpa : float or None
+        Young's modulus; None takes the material's.
+
+    Raises
+    ------
+    UsageError
+        Panels to hold without others to move, or the reverse; an end that is flat; too few steps.
+    """
+
+    hold: tuple[int, ...] = ()
+    move: tuple[int, ...] = ()
+    end: float = CLOSED
+    steps: int = STEPS
+    young_gpa: float | None = None
+
+    def __post_init__(self) -> None:
+        if bool(self.hold) != bool(self.move):
+            raise UsageError("mechanics.hold_and_move")
+        if self.end >= math.pi:
+            raise UsageError("mechanics.end_angle", angle=math.degrees(self.end))
+        if self.steps < LEAST_STEPS:
+            raise UsageError("drive.too_few_steps", found=self.steps, least=LEAST_STEPS)
+
+    def drive(self, deployment: Deployment, sheet: SheetNetwork, width_mm: float) -> Drive:
+        """The drive of a sheet.
+
+        Raises
+        ------
+        MechanicsError
+            Panels that it does not have.
+        """
+        if self.hold:
+            return grips(deployment, sheet, width_mm, self.hold, self.move, self.end, self.steps)
+        return even_closing(sheet, self.end, self.steps)
+
+
+def jam_of(
+    found: Closing, deployment: Deployment, width_mm: float, tolerated: float = TOLERATED_STRETCH
+) -> tuple[float, Source]:
+    """Angle (radians) at which a sheet jams; an estimate where it was not driven to its end."""
+    free = len(found.phi) == found.asked and float(found.stretch.max()) <= tolerated
+    if free and float(found.phi[-1]) > CLOSED + CLOSE_TO:
+        return estimated_jam(estimate_stretch(deployment, found.sheet, width_mm), tolerated), Source.ESTIMATE
+    return found.jam_phi(tolerated), Source.SIMULATION
+
+
 def simulate(
     deployment: Deployment,
     plan: CutPlan,
@@ -497,6 +574,8 @@ def simulate(
     phi: float,
     target: Outline | None = None,
     kept: Sequence[FloatArray | None] | None = None,
+    lead: Leading | None = None,
+    pose: Similarity | None = None,
 ) -> Generator[None, None, SimulatedSheet]:
     """Close a sheet on the connectors of its planned cuts; yields between the steps, for others to have their turn.
 
@@ -512,26 +591,32 @@ def simulate(
     target : Outline, optional
     kept : sequence of (P, 2) float or None, unit cells, optional
         What stays of every panel of a trimmed sheet.
+    lead : Leading, optional
+        How it is closed; all the way by its mean angle unless given.
+    pose : Similarity, optional
+        Of the design at ``phi`` over the target: of poses that are as good as cut, the one nearby counts.
 
     Raises
     ------
     MechanicsError
-        Panels that do not hang together, because too many connectors were removed.
+        Panels that do not hang together, because too many connectors were removed, or grips on panels that are not
+        there.
     """
+    lead = lead or Leading()
     design, deployment = deployment, plan.cut_from(deployment)
-    sheet = planned_sheet(deployment, plan, width_mm, kept)
+    sheet = planned_sheet(deployment, plan, width_mm, kept, young_gpa=lead.young_gpa)
     yield
-    found = yield from _closed_with_contacts(sheet, plan, deployment, width_mm, kept)
-    jam = found.jam_phi()
+    found = yield from _closed_with_contacts(sheet, plan, deployment, width_mm, kept, lead)
+    jam, source = jam_of(found, deployment, width_mm)
     lap = None
     if target is not None:
         yield
-        lap = overlap(deployment, found, width_mm, phi, jam, target, False, design)
+        lap = overlap(deployment, found, width_mm, phi, found.jam_phi(), target, False, design, pose)
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
     panels = cut_panels(plan).moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
-    as_cut = _simulated(plan, found, jam, phi, lap)
-    return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made)
+    as_cut = replace(_simulated(plan, found, jam, phi, lap), source=source)
+    return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made, None if lap is None else lap.laid)
 
 
 def _closed_with_contacts(
@@ -540,19 +625,20 @@ def _closed_with_contacts(
     deployment: Deployment,
     width_mm: float,
     kept: Sequence[FloatArray | None] | None,
+    lead: Leading,
 ) -> Generator[None, None, Closing]:
     """Close a sheet, and close it again as long as panels ran through each other on the way."""
     shift = _shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2)))
     bodies, kerf = (cut_panels(plan), plan.kerf_mm) if plan.tiles is None else (_tiled(plan, deployment), 0.0)
     panels = bodies.moved(shift).numbered(len(plan.panels))
-    found = yield from closing_steps(sheet)
+    found = yield from closing_steps(sheet, lead.drive(deployment, sheet, width_mm))
     for _ in range(MOST_CLOSINGS - 1):
         more = contacts_on_way(panels, found, kerf)
         if not len(more):
             break
         yield
         sheet = sheet.with_meetings(more)
-        found = yield from closing_steps(sheet)
+        found = yield from closing_steps(sheet, lead.drive(deployment, sheet, width_mm))
     return found
 
 
@@ -562,6 +648,7 @@ def simulated(
     width_mm: float,
     target: Outline | None = None,
     deployment: Deployment | None = None,
+    lead: Leading | None = None,
 ) -> SimulatedSheet:
     """Close a design on the connectors of its planned cuts, all in one go; see :func:`simulate`.
 
@@ -571,7 +658,7 @@ def simulated(
         Panels that do not hang together.
     """
     motion, kept = deployment or deploy(candidate.final_sheet), None if candidate.trim is None else candidate.trim.kept
-    return result_of(simulate(motion, plan, width_mm, candidate.final_phi, target, kept))
+    return result_of(simulate(motion, plan, width_mm, candidate.final_phi, target, kept, lead, candidate.final_pose))
 
 
 def _simulated(plan: CutPlan, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:
@@ -620,6 +707,7 @@ def overlap(
     target: Outline,
     forced: bool = True,
     design: Deployment | None = None,
+    pose: Similarity | None = None,
 ) -> Overlap:
     """IoU with the target of the sheet as cut, where it comes to, and as designed.
 
@@ -636,6 +724,8 @@ def overlap(
         Whether it is also measured where the sheet can be forced to; not a number if not.
     design : Deployment, optional
         What it was made from; the sheet that is cut unless given.
+    pose : Similarity, optional
+        Of the design over the target, see :func:`simulate`.
     """
     network = found.sheet.network
     # A sheet that came to the last step goes on to the angle that it is meant for.
@@ -648,5 +738,11 @@ def overlap(
     areas = [covered_area(deployment, network, width_mm, motion) for motion in motions]
     if design is not None and design is not deployment:
         areas[1] = shapely.Polygon(design.outline(phi))
-    as_cut, ideal, *shut = (iou_of_area(area, target) for area in areas)
-    return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal)
+    near = None
+    if pose is not None:
+        posed = PosedDesign(deployment if design is None else design, pose, phi)
+        posed = posed if posed.deployment is deployment else posed.laid_over(deployment)
+        near = CutMotion(found, width_mm, jam, reached, NO_PANELS).nearest(posed, reached)
+    as_cut, laid = pose_of_area(areas[0], target, near)
+    ideal, *shut = (iou_of_area(area, target) for area in areas[1:])
+    return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal, laid)

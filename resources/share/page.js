@@ -31,6 +31,8 @@ function path(points) {
   return text + "Z";
 }
 
+if (window.self !== window.top) document.documentElement.classList.add("framed");
+
 let share = 0;          // 0 flat, 1 over the target
 let playing = 0;
 
@@ -139,3 +141,5 @@ document.addEventListener("keydown", (event) => {
 document.documentElement.style.setProperty("--width", design.size[0] + "mm");
 document.documentElement.style.setProperty("--height", design.size[1] + "mm");
 show(design.shown);
+// It opens once by itself, unless its reader asked for less motion.
+if (!reduced) requestAnimationFrame(play);

@@ -63,6 +63,8 @@ def refused_commands(text: str) -> list[str]:
     refused = []
     for shown in COMMAND.findall(text.replace("\\\n", " ")):
         words = shlex.split(shown.replace("...", ""))
+        # From a redirection on, words are the shell's.
+        words = words[: next((place for place, word in enumerate(words) if word in ("<", ">")), None)]
         if words[0] in first_words:
             try:
                 build_parser().parse_args(words)
@@ -232,6 +234,7 @@ def test_that_planted_faults_are_found(repository: Path) -> None:
         "See [the map](docs/map.md), [here](README.md) and ![it](docs/pictures/none.png).\n"
         "`lattice/gone.py` and `lattice/compact.py`, `tests/unit/nowhere`, `kirigami_studio/gone.py`, 10 m/s.\n\n"
         "    kirigami-studio benchmark lattice --json   # fits\n"
+        "    kirigami-studio benchmark lattice --json > here.json\n"
         "    kirigami-studio benchmark lattice --variant prior\n"
         "    make demo\n"
         "    make tea\n"

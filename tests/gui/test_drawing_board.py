@@ -147,7 +147,7 @@ def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: Ma
 
 def test_that_leaving_the_editor_says_what_comes_next(plate: MainWindow, qtbot: QtBot) -> None:
     use(plate, Tool.POSE)
-    assert plate.status_text.text().startswith("Click a shape")
+    assert plate.status_text.text().startswith("Click to select")
     qtbot.mouseClick(plate.target.tools.done_button, LEFT)
     assert not plate.target.editing and plate.status_text.text().startswith("Press Generate")
 

@@ -132,6 +132,38 @@ def test_that_a_file_that_was_not_made_stops_a_release(
     assert (tmp_path / "SHA256SUMS").read_text(encoding="ascii").startswith("ca978112ca1bbdcafac231b39a23dc4da786eff8")
 
 
+def test_that_notes_of_a_release_are_what_the_changelog_says_of_it(
+    packaging: Path, version: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(packaging))
+    release = loaded("release", packaging / "release.py")
+    for said, wanted in (("## UNRELEASED\n\n## 1.2.0 - 2026-12-01\n\n- New.\n", "- New."),
+                         ("## UNRELEASED\n\n- Newer.\n\n## 1.1.0 - 2026-12-01\n\n- New.\n", "- Newer.")):  # fmt: skip
+        folder = tmp_path / wanted.strip("- .")
+        folder.mkdir()
+        root = tree(folder, said)
+        monkeypatch.setattr(release, "version", lambda root=root: version.version(root))
+        monkeypatch.setattr(release, "changes", lambda wanted, root=root: version.changes(wanted, root))
+        monkeypatch.setattr(release, "unreleased", lambda root=root: version.unreleased(root))
+        notes = release.write_notes(tmp_path)
+        assert notes.name == "kirigami-studio-1.2.0-notes.md"
+        assert notes.read_text(encoding="utf-8") == f"# Kirigami Studio 1.2.0\n\n{wanted}\n"
+
+
+def test_that_the_program_prints_its_own_completion_for_the_packages(
+    bundle: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "kirigami-studio"
+    program.write_text('#!/bin/sh\necho "$@"\n', encoding="utf-8")
+    program.chmod(0o755)
+    monkeypatch.setattr(bundle, "manual", lambda: ".TH")
+    assert bundle.shell_files(program) == {
+        "bash-completion/completions/kirigami-studio": "completion bash\n",
+        "zsh/site-functions/_kirigami-studio": "completion zsh\n",
+        "man/man1/kirigami-studio.1": ".TH",
+    }
+
+
 def test_that_the_menu_entry_starts_the_command_of_the_wheel_with_a_project(packaging: Path, repository: Path) -> None:
     entry = configparser.ConfigParser(interpolation=None)
     entry.optionxform = str  # type: ignore[assignment, method-assign]

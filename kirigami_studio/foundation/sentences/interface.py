@@ -32,6 +32,11 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "Widths of connectors are given by their numbers, as hinge_mm={{3: 0.8}}; got {value:.40}."
     ),
     "api.not_connectors": mark("Connectors are given by their numbers, as removed=[3, 7]; got {value:.40}."),
+    "api.not_panels": mark("Panels are given by their numbers, as {name}=[0, 10]; got {value:.40}."),
+    "api.package_missing": mark(
+        "This needs the package {package}. Install it with pip install 'kirigami-studio[{extra}]'."
+    ),
+    "api.not_a_page_name": mark("A page to share is saved as a {suffix} file; got {path}."),
     "api.no_pieces_on_pins": mark(
         "A design of the construction {construction} has no pieces on pins: plan_cuts and export make its files."
     ),
@@ -40,6 +45,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "api.second_target_not_named": mark("Name the second target that the angle and the weight are for: also=TARGET."),
     # Inputs
     "input.not_valid": mark("{name}: {reason}"),
+    "input.unknown_content": mark(
+        "Standard input is of no kind that is read: drawing, picture, JSON file, array, project or cut file."
+    ),
+    "export.output_is_the_file": mark("With --out - standard output is the file: leave --json and --all out."),
+    "export.several_files": mark("This design is made of several files. Name a folder for them with --out."),
+    "mcp.outside_folder": mark("'{name:.80}' is not in the folder that is served. Name a file in it."),
+    "mcp.wrong_extension": mark("'{name:.80}' has another extension than {kinds}."),
+    "mcp.no_folder": mark("There is no folder {folder} to serve. Make it first."),
     "batch.some_inputs_failed": mark("{failed} of {total} inputs failed. The entry 'error' on their lines says why."),
     "ratios.none_in_folder": mark("The folder {folder} has no sheets (.json, .npy, .npz or .kiri)."),
     "ratios.unknown_extension": mark("Sheets are read from .json, .npy, .npz or .kiri files, got {name}."),

@@ -115,7 +115,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "mechanics.one_source": mark("Name either a project or sheet, or a network with --network."),
     "mechanics.one_sheet": mark("{name} holds {found} sheets. Name a single one."),
     "mechanics.no_design_chosen": mark("No design is chosen in {path}. Choose one in the window and save."),
-    "mechanics.end_angle": mark("--end-deg must be below 180 degrees, which is the flat sheet, got {angle:g}."),
+    "mechanics.end_angle": mark("A sheet is closed to an angle below 180 degrees, the flat sheet; got {angle:g}."),
     "mechanics.hold_and_move": mark("Use --hold and --move together: what is held, and what is led along the path."),
     "mechanics.constant_missing": mark("A network needs {option}. Give --ka, --ks (N/m) and --kt (N m)."),
     "mechanics.unknown_drive": mark(

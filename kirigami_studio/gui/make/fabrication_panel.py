@@ -157,9 +157,8 @@ class FabricationPanel(Card):
         table.setVerticalSpacing(1)
         for place, (key, words) in enumerate(NUMBERS):
             line, across = divmod(place, 3)
-            caption = label(tr(words))
+            caption = label(tr(words), self.numbers[key])
             self.numbers[key].setObjectName("number")
-            self.numbers[key].setAccessibleName(tr(words))
             table.addWidget(caption, 3 * line, across)
             table.addWidget(self.numbers[key], 3 * line + 1, across)
             for part in (caption, self.numbers[key]):

@@ -3,38 +3,12 @@
 from __future__ import annotations
 
 import math
-import re
-from typing import ClassVar
 
 from kirigami_studio.foundation.units import MM_PER_INCH
-from kirigami_studio.foundation.words import number, tr
+from kirigami_studio.foundation.words import ShownUnit, number, tr
 
 UNKNOWN = "\N{EN DASH}"
 TIMES = "\N{MULTIPLICATION SIGN}"
-
-
-class ShownUnit:
-    """The unit of all lengths on the screen: mm, or inches by one switch; values stay in mm."""
-
-    inches: ClassVar[bool] = False
-
-    @classmethod
-    def mm(cls) -> float:
-        """Millimetres in one."""
-        return MM_PER_INCH if cls.inches else 1.0
-
-    @classmethod
-    def name(cls) -> str:
-        """Its sign."""
-        return tr("in") if cls.inches else tr("mm")
-
-    @classmethod
-    def words(cls, text: str) -> str:
-        """A caption or a spoken name that tells of mm, with the shown unit."""
-        if not cls.inches:
-            return text
-        text = text.replace(tr("in millimetres"), tr("in inches"))
-        return re.sub(r"\bmm\b", tr("in"), text)
 
 
 def in_unit(mm: float, digits: int) -> str:

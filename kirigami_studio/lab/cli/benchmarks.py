@@ -538,6 +538,23 @@ def starts(arguments: argparse.Namespace) -> int:
     return 0 if all(one.ok for one in fields) else 1
 
 
+def literature(arguments: argparse.Namespace) -> int:
+    """Targets of published designs; 1 where a best match is behind a published sheet of as many panels."""
+    from kirigami_studio.lab.benchmark.literature_suite import (
+        design_literature,
+        literature_figures,
+        literature_sentences,
+    )
+
+    line = ProgressLine()
+    outlines = [target.read() for target in read_targets(arguments.targets)]
+    shown = _shown_on(line, "Designs")
+    rows = design_literature(outlines, arguments.sizes, arguments.states, arguments.k, arguments.seed, shown)
+    figures = literature_figures(rows)
+    _print_figures(arguments, line, figures, literature_sentences(rows))
+    return 0 if figures["most_ahead"] == figures["published"] else 1
+
+
 def holes(arguments: argparse.Namespace) -> int:
     """Targets with holes, designed and cut; 1 for a hole that is closed or a sheet in pieces."""
     from kirigami_studio.lab.benchmark.holes_suite import design_holes, hole_figures, hole_sentences

@@ -390,6 +390,16 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         option("--width-mm", type=float, default=160.0, help="width of the flat sheet (default 160)"),
         samples(32), SEED, *FIGURES,
     ), ("kirigami-studio benchmark holes", "kirigami-studio benchmark holes --shapes A O gear --k 8")),
+    SubCommand("benchmark literature", "design the targets of published kirigami, beside the published sheets",
+               "lab.cli.benchmarks:literature", (
+        option("--targets", nargs="+", default=["tests/data/literature"], metavar="TARGET",
+               help="files or folders (default: tests/data/literature)"),
+        option("--sizes", nargs="+", type=whole, default=[5, 7, 9], metavar="VOIDS",
+               help="rows and columns of voids (default: 5 7 9, which are 36, 64 and 100 panels)"),
+        option("--states", nargs="+", choices=("closed", "half"), default=["closed", "half"],
+               help="states in which the sheet matches (default: both)"),
+        samples(32), SEED, *FIGURES,
+    ), ("kirigami-studio benchmark literature --k 8",)),
     SubCommand("benchmark solvers", "compare the paper's solvers with fits and samples (its Table 1)",
                "lab.cli.benchmarks:solvers", (
         *targets_of_a_suite(20), EXACT, GRID, SEEDS,

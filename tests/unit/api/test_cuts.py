@@ -62,6 +62,59 @@ def test_that_a_simulation_is_that_of_the_command_line(
     assert found.iou == pytest.approx(told["iou_as_cut"]) and found.closes is (found.jam_phi is None)
 
 
+def test_that_a_led_simulation_is_that_of_the_command_line(
+    design: ks.Design, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    design.save(tmp_path / "one.kiri")
+    told = answer(capsys, "mechanics", tmp_path / "one.kiri", "--width-mm", 80, "--material", "film-uv", "--hold", 0,
+                  "--move", 24, 29, "--end-deg", 120, "--steps", 5, "--young-gpa", 3, "--json")  # fmt: skip
+    found = design.simulate(width_mm=80, material="film-uv", hold=[0], move=np.array([24, 29]),
+                            end=math.radians(120), steps=5, young_gpa=3)  # fmt: skip
+    assert np.degrees(found.phi) == pytest.approx(told["phi_deg"]) and len(found.phi) == 5
+    assert found.displacement_mm == pytest.approx(told["displacement"]) and told["displacement_unit"] == "mm"
+    assert found.force_n == pytest.approx(told["force_n"]) and found.energy_mj == pytest.approx(told["energy_mj"])
+    assert np.isnan(found.torque_nmm).all()
+    assert (
+        found.jam_deg == pytest.approx(told["jam_deg"]) and found.as_cut.source.value == told["jam_from"] == "estimate"
+    )
+
+
+def test_that_grips_that_make_no_sense_are_refused(cuts: ks.Cuts) -> None:
+    for options, code in (
+        ({"hold": [0]}, "mechanics.hold_and_move"),
+        ({"hold": "0", "move": [1]}, "api.not_panels"),
+        ({"hold": [0], "move": [999]}, "drive.unknown_panel"),
+        ({"end": math.pi}, "mechanics.end_angle"),
+        ({"end": 5.0}, "angle.out_of_range"),
+        ({"steps": 2}, "drive.too_few_steps"),
+        ({"steps": 2.5}, "api.not_whole"),
+        ({"young_gpa": float("nan")}, "api.not_a_number"),
+    ):
+        with pytest.raises(ks.KirigamiError) as refused:
+            cuts.simulate(**options)  # type: ignore[arg-type]
+        assert refused.value.code == code
+
+
+def test_that_cut_paths_are_those_of_the_file_in_millimetres(cuts: ks.Cuts, tmp_path: Path) -> None:
+    paths = cuts.paths_mm()
+    assert {"SLITS", "OUTLINE"} <= set(paths)
+    (outline,) = paths["OUTLINE"]
+    assert np.array_equal(outline[0], outline[-1]) and np.ptp(outline, axis=0) == pytest.approx(cuts.size_mm, abs=0.5)
+    lengths = sum(np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for layer in paths.values() for path in layer)
+    assert lengths == pytest.approx(cuts.cut_length_mm, rel=1e-3)
+    read = ks.check(cuts.export(tmp_path / "cut.dxf").path).report
+    assert set(paths) <= set(read.layers) and sum(map(len, paths.values())) == read.path_count
+
+
+def test_that_a_shared_page_is_that_of_an_export(design: ks.Design, cuts: ks.Cuts, tmp_path: Path) -> None:
+    page = tmp_path / "mine.html"
+    shared = ks.share(design, page, material="film-uv", width_mm=80).path.read_bytes()
+    assert shared == cuts.export(page).path.read_bytes()
+    with pytest.raises(ks.KirigamiError) as refused:
+        ks.share(design, tmp_path / "mine.svg")
+    assert refused.value.code == "api.not_a_page_name" and not (tmp_path / "mine.svg").exists()
+
+
 def test_that_a_simulated_sheet_has_panels_on_its_way(cuts: ks.Cuts) -> None:
     motion = cuts.simulate()
     assert motion is cuts.simulate()

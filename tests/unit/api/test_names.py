@@ -10,14 +10,16 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import FrozenInstanceError
+from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 import pytest
 
 import kirigami_studio as ks
-from kirigami_studio.api.choices import CUTS, SEARCH, keywords_of
+from kirigami_studio.api.choices import CUTS, SEARCH, CutKeywords, SearchKeywords, keywords_of
 
 #: What the API gives on which no promise rests: they come with their base classes.
 INHERITED = {"add_note", "args", "with_traceback"}
@@ -59,7 +61,21 @@ def test_that_the_table_of_stable_names_is_what_there_is(listed: dict[str, set[s
 
 
 @pytest.mark.parametrize(
-    "name", ["Target", "Sheet", "Design", "Designs", "Cuts", "Simulation", "Exported", "CheckedFile", "Progress"]
+    "name",
+    [
+        "Target",
+        "Sheet",
+        "Design",
+        "Designs",
+        "Cuts",
+        "Simulation",
+        "Exported",
+        "CheckedFile",
+        "Progress",
+        "Score",
+        "Verdict",
+        "Feasibility",
+    ],
 )
 def test_that_the_table_has_every_attribute(listed: dict[str, set[str]], name: str) -> None:
     assert listed[name] == public(getattr(ks, name))
@@ -91,6 +107,48 @@ def test_that_other_names_are_missing_as_usual() -> None:
     with pytest.raises(AttributeError, match=r"kirigami_studio.*no attribute 'desing'"):
         ks.desing  # noqa: B018
     assert ks.__version__
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        (lambda design: ks.desing, "design"),
+        (lambda design: design.nmae, "name"),
+        (lambda design: setattr(design, "nmae", "mine"), "name"),
+        (lambda design: delattr(design.target, "nmae"), "name"),
+    ],
+)
+def test_that_a_misspelt_attribute_is_refused_with_the_one_that_was_meant(
+    design: ks.Design, wrong: Callable[[ks.Design], object], right: str
+) -> None:
+    with pytest.raises(AttributeError, match=rf"no attribute '\w+'\. Did you mean: '{right}'\?$"):
+        wrong(design)
+
+
+def test_that_an_attribute_like_no_other_is_missing_as_usual(design: ks.Design) -> None:
+    with pytest.raises(AttributeError, match=r"'Design' object has no attribute 'zzz'$"):
+        design.zzz  # type: ignore[attr-defined]  # noqa: B018
+    assert not hasattr(design, "_repr_png_") and not hasattr(ks, "zzz")
+
+
+def test_that_values_are_read_only(design: ks.Design) -> None:
+    for name in ("document", "name"):
+        with pytest.raises(FrozenInstanceError, match=name):
+            setattr(design, name, "mine")
+
+
+@pytest.mark.parametrize("kind", [SearchKeywords, CutKeywords])
+def test_that_type_checkers_know_the_words_of_every_choice(kind: type) -> None:
+    hints, seen = get_type_hints(kind), 0
+    settings = {one.keyword: one for one in keywords_of(*SEARCH, *CUTS).values()}
+    for name, hint in hints.items():
+        if name in settings and issubclass(settings[name].kind, Enum):
+            words = {word for part in get_args(hint) if get_origin(part) is Literal for word in get_args(part)}
+            words |= set(get_args(hint)) & {str(one) for one in words} if get_origin(hint) is Literal else set()
+            assert words == {choice.value for choice in settings[name].kind}, name
+            assert str not in get_args(hint), f"{name} takes any text"
+            seen += 1
+    assert seen >= 3
 
 
 def test_that_every_public_name_says_what_it_is() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from xml.etree import ElementTree
 
@@ -82,3 +83,17 @@ def test_that_numbers_beside_a_curve_are_round_and_around_it(values: list[float]
 def test_that_plain_texts_are_short(hearts: ks.Designs, cuts: ks.Cuts, uneven: ks.Sheet) -> None:
     values = (hearts, hearts[0], hearts.target, uneven, cuts, cuts.simulate())
     assert all(len(repr(value)) < 100 and repr(value).startswith(f"<{type(value).__name__}") for value in values)
+
+
+def test_that_a_design_is_drawn_by_matplotlib_over_its_target(design: ks.Design) -> None:
+    figures = pytest.importorskip("matplotlib.figure")
+    ax = figures.Figure().subplots()
+    assert design.plot(ax) is ax
+    panels, target = ax.collections
+    assert len(panels.get_paths()) == len(design.panels())
+    low, high = ax.dataLim.min, ax.dataLim.max
+    drawn = np.concatenate([*design.panels(), design.target.points])
+    assert np.allclose(low, drawn.min(axis=0)) and np.allclose(high, drawn.max(axis=0))
+    assert np.allclose(target.get_paths()[0].vertices[:-1], design.target.points) and ax.get_title() == design.name
+    flat = design.plot(figures.Figure().subplots(), phi=math.pi)
+    assert np.allclose(flat.collections[0].get_paths()[0].vertices[:-1], design.panels(math.pi)[0])

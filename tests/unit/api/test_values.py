@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -146,6 +147,51 @@ def test_that_designs_are_a_sequence(hearts: ks.Designs, tmp_path: Path) -> None
 
 
 @pytest.mark.torch
+def test_that_a_slice_of_designs_is_designs_with_their_names_and_choice(hearts: ks.Designs, tmp_path: Path) -> None:
+    some = hearts[1:4]
+    assert isinstance(some, ks.Designs) and [one.name for one in some] == [one.name for one in hearts][1:4]
+    assert some.best.sheet == hearts[1].sheet and some.chosen.name == some.best.name
+    assert hearts[:3].chosen.name == hearts.chosen.name
+    assert ks.load_project(some.save(tmp_path / "some.kiri"))[2].sheet == hearts[3].sheet
+    assert len(hearts[5:5]) == 0 and [one.name for one in hearts[::-1]] == [one.name for one in hearts][::-1]
+
+
+def test_that_sheets_take_arrays_of_angles(uneven: ks.Sheet) -> None:
+    angles = np.linspace(0.0, math.pi, 6).reshape(2, 3)
+    for function in (uneven.nodes, uneven.panels, uneven.voids, uneven.area, uneven.porosity):
+        found = function(angles)
+        assert np.array_equal(found[1, 0], function(float(angles[1, 0])))
+        assert found.shape == (2, 3, *np.shape(function(0.0))) and found.dtype == np.float64
+    assert isinstance(uneven.area(np.float64(0.5)), float)
+    with pytest.raises(ks.KirigamiError, match="got 4"):
+        uneven.area([0.0, 4.0])
+    with pytest.raises(ks.KirigamiError, match="number in radians"):
+        uneven.panels(["flat"])
+    with pytest.raises(ks.KirigamiError, match=r"got array\(\[0. , 0.5\]\)"):
+        uneven.outline(np.array([0.0, 0.5]))
+
+
+def test_that_designs_become_a_frame_of_pandas_with_a_row_for_each(hearts: ks.Designs) -> None:
+    pytest.importorskip("pandas")
+    frame = hearts.to_frame()
+    assert list(frame.index) == [design.name for design in hearts]
+    assert frame["iou"].tolist() == [design.iou for design in hearts] and frame["feasible"].dtype == bool
+    assert list(hearts[:0].to_frame().columns) == list(frame.columns)
+
+
+def test_that_packages_that_are_not_there_are_named_with_their_extra(
+    hearts: ks.Designs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, extra, wanted in (
+        ("pandas", "pandas", hearts.to_frame),
+        ("matplotlib.collections", "plot", hearts.best.plot),
+    ):
+        monkeypatch.setitem(sys.modules, name, None)
+        with pytest.raises(ks.KirigamiError, match=rf"pip install 'kirigami-studio\[{extra}\]'") as refused:
+            wanted()
+        assert refused.value.code == "api.package_missing"
+
+
 def test_that_the_same_arguments_give_the_same_designs_as_the_command_line(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -160,3 +206,10 @@ def test_that_the_same_arguments_give_the_same_designs_as_the_command_line(
     small = ks.design("star", k=np.int64(1), grid=np.array([3, 3]), polish=False, start="circle", also="hexagon",
                       also_phi=1.2, phi=np.float32(0.1), material="film-uv")  # fmt: skip
     assert small.best.candidate.second is not None and small.best.sheet.deployment.sheet.start is not None
+
+
+@pytest.mark.torch
+def test_that_progress_in_a_file_has_whole_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    ks.design("circle", k=2, grid=(3, 3), polish=2, regular=0.0, progress=True)
+    said = capsys.readouterr().out
+    assert "\r" not in said and 1 <= len(said.splitlines()) <= 11

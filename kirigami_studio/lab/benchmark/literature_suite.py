@@ -1,0 +1,133 @@
+"""Targets of published kirigami designs, closed and half open, with the match of the published sheets beside ours."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import best_of
+
+#: States of a sheet by name: the angle (radians) at which it matches its target.
+STATES = {"closed": 0.0, "half": 0.5 * math.pi}
+#: Exact IoU of published sheets, in their best pose, by (target, rows and columns of voids, state): the patterns that
+#: Choi, Dudte and Mahadevan (2019) ship with their code, half open with the notches of the rim counted; and the square
+#: that opens into a circle by the code of Dudte et al. (2023), run again.
+PUBLISHED = {
+    ("choi2019_anvil", 5, "half"): 0.910,
+    ("choi2019_circle", 5, "half"): 0.912,
+    ("choi2019_circle", 7, "half"): 0.934,
+    ("choi2019_circle", 9, "half"): 0.948,
+    ("choi2019_egg", 5, "half"): 0.910,
+    ("choi2019_rainbow", 5, "half"): 0.917,
+    ("choi2019_shear", 5, "half"): 0.903,
+    ("choi2019_star", 5, "half"): 0.861,
+    ("choi2019_wedge", 5, "half"): 0.895,
+    ("choi2019_circle", 4, "closed"): 0.9748,
+    ("choi2019_circle", 6, "closed"): 0.9859,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class LiteratureRow:
+    """One run for one published target.
+
+    Attributes
+    ----------
+    target, state : str
+    panels : int
+    first, most : float
+        Exact IoU of the first design, which has even panels, too; and of the feasible one that matches best.  In half
+        open sheets the open notches of the rim are no part of the shape.
+    first_cv, most_cv : float
+        Coefficients of variation of their panel areas.
+    published : float or None
+        Exact IoU of the published sheet with as many panels.
+    processor_seconds : float
+    """
+
+    target: str
+    state: str
+    panels: int
+    first: float
+    most: float
+    first_cv: float
+    most_cv: float
+    published: float | None
+    processor_seconds: float
+
+
+def design_literature(
+    targets: Sequence[Outline],
+    sizes: Sequence[int],
+    states: Sequence[str],
+    k: int,
+    seed: int,
+    report: Callable[[int, int], None] = lambda done, total: None,
+) -> list[LiteratureRow]:
+    """Design published targets on square grids.
+
+    Parameters
+    ----------
+    sizes : sequence of int
+        Rows and columns of voids; a sheet has one more panel each way.
+    states : sequence of str
+        Of :data:`STATES`.
+    report : callable
+        Gets (done, total) designs.
+    """
+    tasks = [(target, size, state) for state in states for size in sizes for target in targets]
+    found = []
+    for number, (target, size, state) in enumerate(tasks):
+        report(number, len(tasks))
+        began = time.process_time()
+        result = best_of(Request(target, (size, size), phi=STATES[state], k=k, seed=seed, polish=15, covers=False))
+        feasible = [one for one in result.candidates if one.score.feasible] or [result.best]
+        most = max(feasible, key=lambda one: one.score.iou_exact)
+        found.append(
+            LiteratureRow(
+                target.name,
+                state,
+                (size + 1) ** 2,
+                result.best.score.iou_exact,
+                most.score.iou_exact,
+                result.best.score.evenness.area_cv,
+                most.score.evenness.area_cv,
+                PUBLISHED.get((target.name, size, state)),
+                time.process_time() - began,
+            )
+        )
+    report(len(tasks), len(tasks))
+    return found
+
+
+def literature_figures(rows: Sequence[LiteratureRow]) -> dict[str, object]:
+    """How many published sheets are matched, means, and a line for each."""
+    compared = [row for row in rows if row.published is not None]
+    return {
+        "designs": len(rows),
+        "first": float(np.mean([row.first for row in rows])),
+        "most": float(np.mean([row.most for row in rows])),
+        "published": len(compared),
+        "first_ahead": sum(row.first > row.published for row in compared if row.published is not None),
+        "most_ahead": sum(row.most > row.published for row in compared if row.published is not None),
+        "each": [asdict(row) for row in rows],
+    }
+
+
+def literature_sentences(rows: Sequence[LiteratureRow]) -> Iterator[str]:
+    """A table for people."""
+    yield "target                 state   panels  first, %    CV  most, %    CV  published    s"
+    for row in rows:
+        beside = "" if row.published is None else f"{100 * row.published:.1f}"
+        yield (
+            f"{row.target:22} {row.state:7} {row.panels:6d} {100 * row.first:9.2f} {row.first_cv:5.2f}"
+            f" {100 * row.most:8.2f} {row.most_cv:5.2f} {beside:>10} {row.processor_seconds:4.0f}"
+        )
+    figures = literature_figures(rows)
+    yield f"ahead of {figures['first_ahead']} (first), {figures['most_ahead']} (most) of {figures['published']}"
