@@ -241,7 +241,7 @@ class OutlineModel:
         apart = 2.0 * (self._plan.even @ nodes) - whole
         # R(-a) U + R(a) V with the sum and the difference of U and V.
         c, s = math.cos(self._half), math.sin(self._half)
-        outline = c * whole
+        outline: FloatArray = c * whole
         outline[:, 0] += s * apart[:, 1]
         outline[:, 1] -= s * apart[:, 0]
         return outline
@@ -310,8 +310,8 @@ class OutlineModel:
             place = np.argsort(basis.variable[number], kind="stable")
             place = place[: int(np.count_nonzero(basis.variable[number] < basis.size))]
             first = np.searchsorted(basis.variable[number[place]], np.arange(basis.size + 1))
-            entries = row[place].astype(np.int32), first.astype(np.int32)
-            self._patterns[basis] = place, basis.sign[number[place]], *entries
+            sign: FloatArray = basis.sign[number[place]]
+            self._patterns[basis] = place, sign, row[place], first
         return self._patterns[basis]
 
     def _forward(self, right: FloatArray, system: _FactoredField) -> FloatArray:
