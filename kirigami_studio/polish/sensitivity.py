@@ -300,8 +300,9 @@ class OutlineModel:
         return CompactLayout(shape, nodes, flat)
 
     def _right_pattern(self, basis: Basis) -> tuple[IntArray, FloatArray, IntArray, IntArray]:
-        """Where right-hand sides of a basis have entries: their places in a list of voids' pairs and mouths' couplings,
-        their signs, their rows, and where each column begins.
+        """Places of the entries in the right-hand sides of a basis.
+
+        In a list of voids' pairs and mouths' couplings; with their signs, their rows, and where each column begins.
         """
         if basis not in self._patterns:
             coupled, mouth = self._plan.known if self.free_rim else (np.zeros(0, np.intp),) * 2
@@ -362,9 +363,9 @@ class NodeMotion:
     known: FloatArray
 
     def outline(self, basis: Basis, pose: complex = 1.0 + 0.0j, more: int = 0) -> FloatArray:
-        """Derivative (L, 2, V + ``more``) of the deployed outline by the variables, turned and scaled by a factor.
+        """Derivative (L, 2, V + ``more``) of the deployed outline by the variables.
 
-        The last columns are left open.
+        It is turned and scaled by the factor ``pose``; the last columns are left open.
         """
         plan, half = self.model._plan, self.model._half
         count = plan.loop.size
