@@ -374,7 +374,8 @@ def _turned(derivative: FloatArray, factor: complex, more: int) -> FloatArray:
 def _with_pose(derivative: FloatArray, points: FloatArray, pose: FloatArray, first: int, poses: int) -> FloatArray:
     """A derivative (2 L, V + P) of posed ``points`` (L, 2) by variables and poses.
 
-    It is made of (L, 2, V + P) with open columns for the P numbers of ``poses``; the points' own pose begins at number ``first`` of these.
+    It is made of (L, 2, V + P) with open columns for the P numbers of ``poses``; the points' own pose begins at
+    number ``first`` of these.
     """
     count, _, size = derivative.shape
     derivative[:, :, size - poses :] = 0.0

@@ -130,7 +130,7 @@ class TransportTerm:
         return np.moveaxis(self._deployed(*slopes), 0, 1)
 
     def _deployed(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Deployed centroids (2, P, ...), or their motions, from those (N, ...) of the compact nodes."""
+        """Deployed centroids (2, P, ...), or their motions, from those (N, ...) of compact nodes."""
         c, s = math.cos(self._half), math.sin(self._half)
         whole_x, whole_y = self._flat @ x - x[0], self._flat @ y - y[0]
         # U + V is the whole: R(-a) U + R(a) V = cos a (U + V) + sin a J (V - U), J a quarter turn.
