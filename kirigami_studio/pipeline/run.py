@@ -255,7 +255,7 @@ def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
 
 
 def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
-    """Sample the request's sheets: all designs that are not fitted from the uniform sheet, see :func:`samples`."""
+    """Sample all designs that are not fitted from the uniform sheet, see :func:`samples`."""
     return samples(request, model)[0]
 
 
@@ -392,7 +392,7 @@ class _Work:
         self.cut_short = False
 
     def score(self, sheets: Sequence[Sheet], numbers: Sequence[int] | None = None) -> Iterator[Event]:
-        """Score all samples, the first batch even when the budget is used up; they count up by default."""
+        """Score samples, which count up by default; the first batch whatever the budget."""
         total = len(sheets)
         numbers = range(total) if numbers is None else numbers
         for start in range(0, total, SCORED_TOGETHER):
@@ -417,7 +417,7 @@ class _Work:
             yield from self.score(spare[: len(numbers)], numbers)
 
     def polish(self) -> Iterator[Event]:
-        """Fit samples that differ, best first: a few steps for all, then the rest for those that may win."""
+        """Fit samples that differ: a few steps for all, then the rest for those that may win."""
         chosen = worth_a_fit([one for one in self.found if one.origin is not Origin.GUIDED], self.ranking)
         total, whole = len(chosen), self.request.polish < 2 * FIRST_ROUND
         steps = self.request.polish if whole else FIRST_ROUND
@@ -455,7 +455,7 @@ class _Work:
             yield POLISHING.progress(done, total)
 
     def guide(self) -> Generator[Event]:
-        """Fit from the uniform sheet in several poses, in the better ones another way, till the best agree."""
+        """Fit from the uniform sheet in several poses and ways until the best two agree."""
         tasks = fits_from_uniform(self.request)
         worth: dict[GuidedTask, float] = {}
         done = 0

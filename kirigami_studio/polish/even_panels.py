@@ -125,7 +125,7 @@ class EvenPanelsAt:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PanelPattern:
-    """Where a matrix (2 N, 2 N) that couples nodes of one panel, their x and then their y, has entries."""
+    """Places of entries in a matrix (2 N, 2 N) on the nodes' x and y that couples panels' nodes."""
 
     base: FloatArray  #: (E,); entries that do not change
     column: IntArray  #: (E,)
@@ -134,7 +134,7 @@ class PanelPattern:
 
     @classmethod
     def of(cls, elastic: csr_matrix, panels: IntArray) -> PanelPattern:
-        """The pattern of ``panels`` (P, 4), corner numbers, with a matrix (N, N) for x and for y in it."""
+        """The pattern of ``panels`` (P, 4), with a matrix (N, N) for x and for y in it."""
         count = elastic.shape[0]
         still = elastic.tocoo()
         corners = np.concatenate([panels, panels + count], axis=1)

@@ -51,7 +51,7 @@ class Matching:
         return slope
 
     def curvature(self, count: int, trust: float) -> csr_matrix:
-        """Gauss-Newton approximation (2 count, 2 count), sparse, of the cost's second derivative by the vertices."""
+        """Gauss-Newton second derivative of the cost by the vertices: (2 count, 2 count), sparse."""
         return self.spread(2.0 * self.weight / np.sqrt(1.0 + np.square(self.distance / trust)), count)
 
     def _stretching(self, outline: FloatArray, trust: float) -> FloatArray:
@@ -78,8 +78,9 @@ class Matching:
         return pull.ravel()
 
     def spread(self, stiffness: FloatArray, count: int) -> csr_matrix:
-        """Second derivative (2 count, 2 count), sparse, by the vertices from that by the distances (R,), each on its
-        own: a vertex and its two neighbours move a distance.
+        """Second derivative (2 count, 2 count), sparse, by the vertices from that by distances (R,).
+
+        A vertex and its two neighbours move a distance.
         """
         stiff = stiffness / np.square(np.maximum(self.distance, 1e-12))
         x, y, share, rest = self.gap[:, 0], self.gap[:, 1], self.share, 1.0 - self.share
@@ -97,8 +98,9 @@ class Matching:
 
 @lru_cache(maxsize=64)
 def _neighbouring(count: int) -> tuple[IntArray, IntArray]:
-    """Columns of the coordinates of each vertex of a closed polygon and of its neighbours, for both rows of a vertex,
-    and where each row begins.
+    """Columns of the coordinates of each vertex of a closed polygon and of its neighbours.
+
+    For both rows of a vertex, and where each row begins.
     """
     vertex = (np.arange(count)[:, None] + np.arange(-1, 2)) % count
     columns = (2 * vertex[:, :, None] + np.arange(2)).reshape(count, 1, 6)

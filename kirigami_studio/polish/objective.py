@@ -363,7 +363,7 @@ def _factor(pose: FloatArray) -> complex:
 
 
 def _turned(derivative: FloatArray, factor: complex, more: int) -> FloatArray:
-    """A derivative (L, 2, V) of places turned and scaled by a factor, with ``more`` columns that are left open."""
+    """A derivative (L, 2, V) turned and scaled by a factor, with ``more`` columns left open."""
     count, _, size = derivative.shape
     turned = np.empty((count, 2, size + more))
     turned[:, 0, :size] = factor.real * derivative[:, 0] - factor.imag * derivative[:, 1]
@@ -372,8 +372,10 @@ def _turned(derivative: FloatArray, factor: complex, more: int) -> FloatArray:
 
 
 def _with_pose(derivative: FloatArray, points: FloatArray, pose: FloatArray, first: int, poses: int) -> FloatArray:
-    """A derivative of posed ``points`` (L, 2) by variables and poses, (2 L, V + P), from (L, 2, V + P) with open
-    columns for the P numbers of ``poses``; the points' own pose begins at number ``first`` of these.
+    """A derivative (2 L, V + P) of posed ``points`` (L, 2) by variables and poses.
+
+    It is made of (L, 2, V + P) with open columns for the P numbers of ``poses``; the points' own pose begins at
+    number ``first`` of these.
     """
     count, _, size = derivative.shape
     derivative[:, :, size - poses :] = 0.0

@@ -241,7 +241,7 @@ class OutlineModel:
         apart = 2.0 * (self._plan.even @ nodes) - whole
         # R(-a) U + R(a) V with the sum and the difference of U and V.
         c, s = math.cos(self._half), math.sin(self._half)
-        outline = c * whole
+        outline: FloatArray = c * whole
         outline[:, 0] += s * apart[:, 1]
         outline[:, 1] -= s * apart[:, 0]
         return outline
@@ -300,8 +300,9 @@ class OutlineModel:
         return CompactLayout(shape, nodes, flat)
 
     def _right_pattern(self, basis: Basis) -> tuple[IntArray, FloatArray, IntArray, IntArray]:
-        """Where right-hand sides of a basis have entries: their places in a list of voids' pairs and mouths' couplings,
-        their signs, their rows, and where each column begins.
+        """Places of the entries in the right-hand sides of a basis.
+
+        In a list of voids' pairs and mouths' couplings; with their signs, their rows, and where each column begins.
         """
         if basis not in self._patterns:
             coupled, mouth = self._plan.known if self.free_rim else (np.zeros(0, np.intp),) * 2
@@ -310,8 +311,8 @@ class OutlineModel:
             place = np.argsort(basis.variable[number], kind="stable")
             place = place[: int(np.count_nonzero(basis.variable[number] < basis.size))]
             first = np.searchsorted(basis.variable[number[place]], np.arange(basis.size + 1))
-            entries = row[place].astype(np.int32), first.astype(np.int32)
-            self._patterns[basis] = place, basis.sign[number[place]], *entries
+            sign: FloatArray = basis.sign[number[place]]
+            self._patterns[basis] = place, sign, row[place], first
         return self._patterns[basis]
 
     def _forward(self, right: FloatArray, system: _FactoredField) -> FloatArray:
@@ -362,9 +363,9 @@ class NodeMotion:
     known: FloatArray
 
     def outline(self, basis: Basis, pose: complex = 1.0 + 0.0j, more: int = 0) -> FloatArray:
-        """Derivative (L, 2, V + ``more``) of the deployed outline by the variables, turned and scaled by a factor.
+        """Derivative (L, 2, V + ``more``) of the deployed outline by the variables.
 
-        The last columns are left open.
+        It is turned and scaled by the factor ``pose``; the last columns are left open.
         """
         plan, half = self.model._plan, self.model._half
         count = plan.loop.size

@@ -94,7 +94,7 @@ def _target_points(target: Outline) -> FloatArray:
 
 @lru_cache(maxsize=8)
 def centroid_matrices(rows: int, columns: int) -> tuple[csr_matrix, csr_matrix]:
-    """Sparse matrices (P, N) that read panel centroids off the compact nodes: in the flat sheet, and in U."""
+    """Sparse matrices (P, N) from compact nodes to panel centroids: of the flat sheet, and of U."""
     tables = topology(rows, columns)
     panels = tables.panel_nodes.reshape(-1, 4)
     flat = np.zeros((len(panels), tables.node_count))
@@ -130,7 +130,7 @@ class TransportTerm:
         return np.moveaxis(self._deployed(*slopes), 0, 1)
 
     def _deployed(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Deployed places (2, P, ...) of centroids, or their motions, from those (N, ...) of the compact nodes."""
+        """Deployed centroids (2, P, ...), or their motions, from those (N, ...) of compact nodes."""
         c, s = math.cos(self._half), math.sin(self._half)
         whole_x, whole_y = self._flat @ x - x[0], self._flat @ y - y[0]
         # U + V is the whole: R(-a) U + R(a) V = cos a (U + V) + sin a J (V - U), J a quarter turn.

@@ -264,5 +264,5 @@ def _fastest(work: Callable[[], object]) -> float:
 
 
 def all_timings() -> dict[str, object]:
-    """Time whole runs (``runs``, ``runs_alone`` in one process), scores and fits (all of :func:`polish_timings`)."""
+    """Time runs (``runs``, ``runs_alone`` in one process), scores and fits."""
     return {"runs": run_timings(), "runs_alone": run_timings(ALONE, workers=0), **polish_timings()}
