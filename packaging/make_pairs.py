@@ -17,7 +17,7 @@ from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import save
-from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.design import DesignSettings, KeptSymmetry
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design
 from kirigami_studio.studio.verdict import assess
@@ -73,11 +73,11 @@ def made(pair: Pair) -> Document:
         seed=SEED,
         polish=POLISH,
         regular=REGULAR,
-        symmetry=pair.symmetry,
+        symmetry=KeptSymmetry(pair.symmetry),
         start=start_shape(pair.start),
     )
     request = request_for(read_target(pair.target), wanted, cut)
-    result = completed(run_design(request, cut, as_cut=False), lambda _: None)
+    result = completed(run_design(request, cut), lambda _: None)
     document = document_of(result, cut)
     number = next(k for k, one in enumerate(document.candidates) if not pair.upright or abs(turn_of(one)) < UPRIGHT)
     # As it was, without how it was sampled.

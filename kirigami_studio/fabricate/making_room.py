@@ -216,7 +216,7 @@ class _Programme:
 
     @property
     def hopeless(self) -> bool:
-        """Whether connectors are wider than all cuts together are long, which the silhouette decides."""
+        """Whether connectors are wider than the summed length of all cuts of the silhouette."""
         ends = self._scale * self._design.compact[self._table.ends]
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         return float(self._hinge_spans.sum()) > float(length.sum())

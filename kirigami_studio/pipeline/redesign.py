@@ -58,7 +58,7 @@ class Room:
     span_mm: float = 0.0  #: width of a connector and of the cut; 0 where connectors need no room
 
     def made(self, deployment: Deployment, cancel: Callable[[], bool] = lambda: False) -> Deployment:
-        """The sheet with that room, as planning makes it for whole ones; itself where that is called off."""
+        """Sheet with the room that planning makes for whole sheets; itself if called off."""
 
         def go_on() -> None:
             if cancel():

@@ -172,7 +172,7 @@ class Request(DesignChoices):
 
     @property
     def may_cover_pieces(self) -> bool:
-        """Whether covers may be made where pieces on pins show the target badly: of layers that lie on each other."""
+        """Whether covers may be made for pieces on pins that show the target badly."""
         return self.covers and self.fitted_starts > 0 and self.second is None and self.upright and self.phi == 0.0
 
     @property

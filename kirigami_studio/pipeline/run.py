@@ -522,7 +522,7 @@ class _Work:
         yield from self._covered_by([CoverTask(candidate) for candidate in chosen], COVERS)
 
     def cover_on_pins(self) -> Iterator[Event]:
-        """Make covers of pinned sheets from scratch: fits to the target itself fill its notches by chance."""
+        """Make covers of pinned sheets from scratch."""
         request = self.request
         tasks: list[PinnedCoverTask] = []
         for easy in PINNED_COVER_TURNS:

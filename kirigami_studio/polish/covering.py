@@ -162,7 +162,10 @@ def fit_cover(
 
 @lru_cache(maxsize=16)
 def notches_filled(target: Outline, least: float = DEEP_FROM, easy: float = EASY_TURN) -> EasyShape | None:
-    """Fill the narrowest notches of a target until it turns back by ``easy``; none below ``least`` (radians)."""
+    """Fill the narrowest notches of a target until it turns back by ``easy``.
+
+    None below ``least`` (radians) is filled.
+    """
     if turn_back(target).angle < least:
         return None
     for radius in DISCS:

@@ -266,7 +266,7 @@ def run_design(
 
 
 def wants_covers_on_pins(result: Result) -> bool:
-    """Whether pieces of all designs that were looked at show the target badly, so that covers may show it better."""
+    """Whether the pieces of all inspected designs show the target badly."""
     if not result.request.may_cover_pieces or result.budget_ended:
         return False
     made = [result.ranking.made_match(one) for one in result.losses if one not in result.refusals]

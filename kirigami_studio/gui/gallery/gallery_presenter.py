@@ -174,8 +174,8 @@ class GalleryPresenter(QObject):
         pieces = {candidate: one for candidate, one in found.items() if one.of_pieces}
         losses = {candidate: candidate.match - shown_match(candidate, one) for candidate, one in pieces.items()}
         refusals |= {one: why for one in pieces if one in verdicts and (why := verdicts[one].refusal) is not None}
-        known = {"jam_phi": {**ranking.jam_phi, **jams}, "losses": {**ranking.losses, **losses}}
-        return replace(ranking, refusals=refusals, **known)
+        jam_phi, losses = {**ranking.jam_phi, **jams}, {**ranking.losses, **losses}
+        return replace(ranking, refusals=refusals, jam_phi=jam_phi, losses=losses)
 
     def show_document(self, document: Document) -> None:
         """The document has changed: marks, names and order of the cards."""

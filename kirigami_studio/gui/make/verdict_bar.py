@@ -106,8 +106,8 @@ class VerdictBar(QFrame):
 
     def _fit_sentence(self) -> None:
         """Show the worst problem, or the first note, in one line of a wide or low banner or two of a narrow one."""
-        left, _, right, _ = self._grid.getContentsMargins()
-        width = max(self.width() - left - right - 2 * self.frameWidth() - 2, 1)
+        margins = self._grid.contentsMargins()
+        width = max(self.width() - margins.left() - margins.right() - 2 * self.frameWidth() - 2, 1)
         said, metrics = self._state.lines[1:2], self.sentence.fontMetrics()
         lines = 1 if width >= WIDE or self._low else 2
         self.sentence.setWordWrap(lines > 1)
