@@ -15,9 +15,10 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.lattice.laying import start_error
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
+from kirigami_studio.polish.symmetry import KeptSymmetry
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import save
-from kirigami_studio.settings.design import DesignSettings, KeptSymmetry
+from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import completed, document_of, request_for, run_design
 from kirigami_studio.studio.verdict import assess
