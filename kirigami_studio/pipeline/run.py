@@ -80,6 +80,9 @@ SEARCH_STARTS = 3
 #: and finishing added 0.0004 at most.
 MAY_WIN, MAY_COME_FIRST = 0.0015, 0.0003
 
+#: So many samples get a second round whatever they lack: they are on the first row of cards.
+SECOND_ROUND_SHOWN = 4
+
 #: Fits from the uniform sheet end once the best two agree in worth within this.  Until then poses whose fits agree with
 #: the best are tried another way, and others are left behind.
 AGREED = 0.001
@@ -428,8 +431,10 @@ class _Work:
         places = {one.index: place for place, one in enumerate(self.found)}
         now = self.ranking.ranked(self.found[places[candidate.index]] for candidate in chosen)[:best]
         # What the first round has improved gets the steps that are left, others all.
+        near = self._near_first(now, MAY_WIN)
         again = [
-            PolishTask(one, left if one.polished else self.request.polish) for one in self._near_first(now, MAY_WIN)
+            PolishTask(one, left if one.polished else self.request.polish)
+            for one in (near if len(near) > SECOND_ROUND_SHOWN else now[:SECOND_ROUND_SHOWN])
         ]
         yield from self._polished(again, total, total + len(again))
 
