@@ -28,6 +28,7 @@ class Compared:
     Attributes
     ----------
     table, family, name : str
+    targets : int
     floor, siou : float
         Of the uniform sheet, and ours.
     released : float or None
@@ -42,6 +43,7 @@ class Compared:
     table: str
     family: str
     name: str
+    targets: int
     floor: float
     siou: float
     released: float | None
@@ -104,12 +106,12 @@ def beside_paper_section(
         "does not say which family it used, nor which way round its tables were measured."
     )
     yield ""
-    yield "| table | family | row | uniform sheet | ours | as released | paper | lead | like for like |"
-    yield "|---|---|---|---|---|---|---|---|---|"
+    yield "| table | family | targets | row | uniform sheet | ours | as released | paper | lead | like for like |"
+    yield "|---|---|---|---|---|---|---|---|---|---|"
     for row in rows:
         numbers = f"{share(row.floor)} | {share(row.siou)} | {measured(row.released)} | {share(row.paper)}"
         like = f"no: {row.apart}" if row.apart else "yes"
-        yield f"| {row.table} | {row.family} | {row.name} | {numbers} | {row.points:+.1f} | {like} |"
+        yield f"| {row.table} | {row.family} | {row.targets} | {row.name} | {numbers} | {row.points:+.1f} | {like} |"
     behind = [row for row in rows if not row.ahead]
     if behind:
         yield ""
@@ -147,7 +149,9 @@ def _generator_rows(figures: Figures, falling: Collection[str]) -> Iterator[Comp
             causes = ["how it was trained is not recorded"] if trained is None else _causes(trained, family)
             why = list(causes)
             if trained is not None and trained["latent"] == COARSE:
-                why.append(f"fields are resized to {COARSE} x {COARSE} pixels, which smooths the checkerboard in them")
+                why.append(
+                    f"fields are resized to {COARSE} x {COARSE} pixels, which smooths the checkerboard that makes the shape"
+                )
             if name in falling:
                 why.append("its match on validation falls while it is trained, see *Training*")
             yield from _row("2, generators", family, name, found, row, "; ".join(causes), "; ".join(why))
@@ -189,6 +193,7 @@ def _row(
             table,
             family,
             name,
+            found["targets"],
             found["uniform_siou"],
             row["siou"],
             row.get("siou_released"),
