@@ -150,7 +150,8 @@ def _generator_rows(figures: Figures, falling: Collection[str]) -> Iterator[Comp
             why = list(causes)
             if trained is not None and trained["latent"] == COARSE:
                 why.append(
-                    f"fields are resized to {COARSE} x {COARSE} pixels, which smooths the checkerboard that makes the shape"
+                    f"fields are resized to {COARSE} x {COARSE} pixels, which smooths the checkerboard that makes the "
+                    "shape"
                 )
             if name in falling:
                 why.append("its match on validation falls while it is trained, see *Training*")

@@ -38,7 +38,8 @@ def generator_section(suites: Sequence[Figures], pictures: dict[str, bytes]) -> 
 
 def _generator_tables(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
     """The tables of one call of the suite, by family."""
-    shared = f"seed{'s' * (len(figures['seeds']) > 1)} {', '.join(map(str, figures['seeds']))}; distance and IS of {figures['settings']['k']} samples a target"
+    seeds, k = figures["seeds"], figures["settings"]["k"]
+    shared = f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}; distance and IS of {k} samples a target"
     notes = []
     if older := rows_of_older_weights(figures["weights"]):
         notes.append(
