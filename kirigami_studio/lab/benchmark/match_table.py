@@ -72,7 +72,7 @@ def success_share(records: Sequence[Record]) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MethodRow(MatchRow):
-    """A row that is told beside the uniform sheet.
+    """A row beside the uniform sheet.
 
     Attributes
     ----------

@@ -21,7 +21,7 @@ from kirigami_studio.lab.benchmark.report.cells import (
 
 
 def generator_section(suites: Sequence[Figures], pictures: dict[str, bytes]) -> Iterator[str]:
-    """The paper's Table 2: one sample a target, and what other numbers of steps give; one suite after the other."""
+    """The paper's Table 2: one sample a target, and other numbers of steps, call by call."""
     yield "## Table 2: conditional generators"
     yield ""
     yield (
