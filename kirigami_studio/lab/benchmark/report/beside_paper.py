@@ -166,13 +166,13 @@ def _generator_rows(figures: Figures, falling: Collection[str]) -> Iterator[Comp
 def _causes(trained: Figures, family: str) -> list[str]:
     """How a network's training differs from the paper's, for targets of one family."""
     causes = []
+    if trained["family"] != family:
+        causes.append(f"trained on {'a mixture of families' if trained['family'] == MIXED else trained['family']}")
     if trained["calls"]:
         if trained["calls"] < GRPO_CALLS:
             causes.append(f"{trained['calls']} of {GRPO_CALLS} calls")
     elif trained["steps"] * trained["batch"] < TRAINING_STEPS * TRAINING_BATCH:
         causes.append(f"{trained['steps']} of {TRAINING_STEPS} steps")
-    if trained["family"] != family:
-        causes.append(f"trained on {'a mixture of families' if trained['family'] == MIXED else trained['family']}")
     return causes
 
 
