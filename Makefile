@@ -173,11 +173,9 @@ demo: setup
 	$(BIN)/kirigami-studio design heart --k 8 --out out/heart
 
 states: setup
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states
-	QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states-200 --scale 2
 	for language in en de; do for scale in 1 2; do \
-	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.page_states \
-	    --language $$language --scale $$scale --out out/pages-$$language-$$scale || exit 1; done; done
+	  QT_QPA_PLATFORM=offscreen $(BIN)/python -m kirigami_studio.lab.demonstrations.state_sheet \
+	    --language $$language --scale $$scale --out out/states-$$language-$$scale || exit 1; done; done
 
 pairs: setup
 	$(BIN)/python packaging/make_pairs.py

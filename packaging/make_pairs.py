@@ -15,6 +15,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.lattice.laying import start_error
 from kirigami_studio.outlines.read import read_target
 from kirigami_studio.outlines.starts import start_shape
+from kirigami_studio.polish.symmetry import KeptSymmetry
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import save
 from kirigami_studio.settings.design import DesignSettings
@@ -73,11 +74,11 @@ def made(pair: Pair) -> Document:
         seed=SEED,
         polish=POLISH,
         regular=REGULAR,
-        symmetry=pair.symmetry,
+        symmetry=KeptSymmetry(pair.symmetry),
         start=start_shape(pair.start),
     )
     request = request_for(read_target(pair.target), wanted, cut)
-    result = completed(run_design(request, cut, as_cut=False), lambda _: None)
+    result = completed(run_design(request, cut), lambda _: None)
     document = document_of(result, cut)
     number = next(k for k, one in enumerate(document.candidates) if not pair.upright or abs(turn_of(one)) < UPRIGHT)
     # As it was, without how it was sampled.

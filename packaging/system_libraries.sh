@@ -23,6 +23,11 @@ if [ "${1:-}" = tests ]; then
     for pair in Xvfb:xvfb xdotool:xdotool; do
         command -v "${pair%%:*}" >/dev/null 2>&1 || { missing="$missing ${pair##*:}"; files="$files ${pair%%:*}"; }
     done
+    # A screen reader's view: a bus, the registry on it, and its bindings for the system's Python.
+    command -v dbus-daemon >/dev/null 2>&1 || { missing="$missing dbus"; files="$files dbus-daemon"; }
+    [ -e /usr/share/dbus-1/services/org.a11y.Bus.service ] || { missing="$missing at-spi2-core"; files="$files org.a11y.Bus"; }
+    /usr/bin/python3 -c 'import gi; gi.require_version("Atspi", "2.0")' >/dev/null 2>&1 \
+        || { missing="$missing python3-gi gir1.2-atspi-2.0"; files="$files Atspi-2.0.typelib"; }
 fi
 [ -n "$missing" ] || exit 0
 

@@ -76,6 +76,7 @@ from kirigami_studio.project.store import CUT_FILES, SUFFIX, load, save
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import CutChange, FabricationSettings, is_pinned, with_choices
 from kirigami_studio.studio.as_cut import AsCut, Leading, simulated
+from kirigami_studio.studio.assembling import assembled
 from kirigami_studio.studio.cutting import check_connectors
 from kirigami_studio.studio.file_kinds import FILE_KINDS
 from kirigami_studio.studio.making import (
@@ -93,6 +94,7 @@ from kirigami_studio.studio.making import (
     written,
     written_pieces,
 )
+from kirigami_studio.studio.two_states import shown_match
 from kirigami_studio.studio.verdict import Level, Verdict, judge_assembled
 
 if TYPE_CHECKING:
@@ -370,8 +372,23 @@ class Design:
 
     @property
     def iou(self) -> float:
-        """Exact IoU of the polygons; of a trimmed design that of what is left."""
+        """Exact IoU of the polygons: of the trimmed ones, and of the lattice of a design on pins."""
         return self.candidate.match
+
+    @property
+    def match(self) -> float:
+        """IoU that everything shows: of the pieces on pins, which are made for it, else ``iou``."""
+        if not self._is_pinned:
+            return self.iou
+        try:
+            made = assembled(self.candidate, self.document.fabrication, self.target.outline)
+        except (FabricationError, UsageError):  # which making them explains
+            return self.iou
+        return shown_match(self.candidate, made.as_cut)
+
+    @property
+    def _is_pinned(self) -> bool:
+        return is_pinned(self.document.fabrication)
 
     @property
     def tv(self) -> float:
@@ -603,11 +620,12 @@ class Design:
     def __repr__(self) -> str:
         rows, columns = self.grid
         told = "" if self.feasible else ", not feasible"
-        return f"<Design {self.name} for {self.target.name!r}: {rows} x {columns} voids, IoU {self.iou:.4f}{told}>"
+        iou = f"{'lattice ' if self._is_pinned else ''}IoU {self.iou:.4f}"  # nothing is made to be named
+        return f"<Design {self.name} for {self.target.name!r}: {rows} x {columns} voids, {iou}{told}>"
 
     def _repr_svg_(self) -> str:
         rows, columns = self.grid
-        figures = [f"IoU {self.iou:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
+        figures = [f"IoU {self.match:.3f}", f"{rows} × {columns}", f"CV {self.area_cv:.2f}"]
         details = "  ·  ".join(figures if self.feasible else [*figures, "not feasible"])
         heading = f"{self.name}  ·  {self.target.name}"
         return states_picture(self.posed, self.target.outline.rings, heading, details, self._small_pieces)

@@ -43,6 +43,7 @@ from kirigami_studio.studio.designing import (
     Tell,
     completed,
     document_of,
+    gap_of,
     limit_of,
     request_for,
     run_design,
@@ -114,7 +115,10 @@ class Designs(Sequence[Design]):
 
     def why_covered(self) -> str:
         """Why covers, of which parts are cut away, stand beside closed designs; "" without any."""
-        why = why_covered(self.document.candidates, self.document.target, self.document.settings.start)
+        document = self.document
+        if gap_of(document.fabrication):  # what panels of pinned sheets show says little of their pieces
+            return ""
+        why = why_covered(document.candidates, document.target, document.settings.start)
         return "" if why is None else why.text
 
     def closed_limit(self) -> str:

@@ -21,6 +21,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.left_corners import left_corners
 from kirigami_studio.lattice.symmetry import symmetry_of
 from kirigami_studio.lattice.topology import topology
 
@@ -34,8 +35,6 @@ MOSTLY = 0.5
 LEAST_GAIN_MM2, ROUNDS = 1.0, 3
 #: A symmetric sheet keeps its symmetry where panels lie in holes by shares that differ by no more from their images'.
 ALIKE = 0.1
-#: Nearer than this (unit cells) what a trim left of a panel has its corner.
-AT_CORNER = 0.02
 
 
 def panels_left(design: PosedDesign, shown: Polygon, cell_mm: float, options: PinOptions) -> PanelTable:
@@ -118,12 +117,7 @@ def _panels_of(voids: BoolArray, grid: tuple[int, int]) -> PanelTable:
 def _left_by(trim: Trim, deployment: Deployment) -> PanelTable:
     """Panels of which a trim left something, and pins that both parts reach."""
     every = all_panels(*deployment.sheet.grid)
-    reached = every.hinged.copy()
-    for number, part in enumerate(trim.kept):
-        if part is not None:
-            corners = shapely.points(deployment.compact[every.corners[number]])
-            near = shapely.distance(corners, Polygon(part)) < AT_CORNER if len(part) else False
-            reached[number] &= near
+    reached = every.hinged & left_corners(trim.kept, deployment.compact[every.corners])
     both = np.bincount(every.corners.ravel(), reached.ravel())[every.corners] > 1.0
     hinged = reached & both
     return every.at(np.flatnonzero(hinged.any(axis=1)), hinged)

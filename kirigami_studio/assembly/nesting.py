@@ -23,8 +23,33 @@ from kirigami_studio.lattice.deployment import rotate
 #: rectpack counts whole numbers: units to the mm.
 UNITS = 1000
 
+
+class _QuickFree:
+    """Free rectangles that are compared all at once, not pair by pair."""
+
+    _max_rects: list[Any]
+
+    def _remove_duplicates(self) -> None:
+        """Leave out free rectangles that lie in others; of equal ones none stays, as in rectpack."""
+        if not self._max_rects:
+            return
+        x, y, width, height = np.array([(one.x, one.y, one.width, one.height) for one in self._max_rects]).T
+        inside = (x[:, None] <= x) & (y[:, None] <= y)
+        inside &= ((x + width)[:, None] >= x + width) & ((y + height)[:, None] >= y + height)
+        np.fill_diagonal(inside, False)
+        self._max_rects = [one for one, within in zip(self._max_rects, inside.any(axis=0), strict=True) if not within]
+
+
+class _BestArea(_QuickFree, rectpack.MaxRectsBaf):  # type: ignore[misc]
+    """Rectangles where least of a free one is left."""
+
+
+class _BottomLeft(_QuickFree, rectpack.MaxRectsBl):  # type: ignore[misc]
+    """Rectangles as low as they may lie."""
+
+
 #: Ways of packing that are tried; the one with the fewest beds and the least of the last one is taken.
-WAYS = tuple(product((rectpack.MaxRectsBaf, rectpack.MaxRectsBl), (rectpack.SORT_AREA, rectpack.SORT_SSIDE)))
+WAYS = tuple(product((_BestArea, _BottomLeft), (rectpack.SORT_AREA, rectpack.SORT_SSIDE)))
 #: By how much a block is made larger until it holds everything, and where it begins: shares of the area of all
 #: rectangles.
 GROWTH, BEGIN = 1.04, 1.02

@@ -18,9 +18,11 @@ from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.fabricate.fastener import Fastener
-from kirigami_studio.foundation.arrays import ComplexArray, FloatArray
+from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, ShapeRings, as_rings
 
 if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
     from kirigami_studio.assembly.backed import BackedSheet
     from kirigami_studio.assembly.holding import HoldPlace
     from kirigami_studio.assembly.pieces import Assembly, Piece
@@ -213,6 +215,21 @@ class PosedPieces:
     def outlines(self, phi: float) -> list[FloatArray]:
         """The outline (L, 2) of every piece at an angle, world."""
         return [rings[0] for rings in self.rings(phi)]
+
+    def silhouette(self, phi: float, target: ShapeRings) -> BaseGeometry:
+        """Pieces on pins at an angle, world, without a board: filled but at holes of the target."""
+        import shapely
+
+        from kirigami_studio.assembly.checks import filled
+        from kirigami_studio.assembly.shaping import united
+
+        outer, *holes = as_rings(target)
+        bodies = [
+            shapely.Polygon(outline, inside[: len(piece.openings)])
+            for piece, (outline, *inside) in zip(self.assembly.pieces, self.rings(phi), strict=True)
+            if piece.layer < CLOTH
+        ]
+        return filled(united(*bodies), shapely.Polygon(outer, holes))
 
     def points(self, phi: float) -> FloatArray:
         """Corners of all pieces at an angle: (P, 2) world."""

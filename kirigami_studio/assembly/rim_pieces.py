@@ -19,14 +19,22 @@ from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.cut_away import kept_voids, rim_loops
 from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
-from kirigami_studio.assembly.shaping import OVERLAP, ZONE_CHORDS, Shaping, less, shared, united
+from kirigami_studio.assembly.shaping import (
+    COARSE,
+    LEAST_PART,
+    OVERLAP,
+    ZONE_CHORDS,
+    Shaping,
+    less,
+    shared,
+    together,
+    united,
+)
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import PanelTable
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
 
-#: Parts smaller than this, mm2, are neither cut off nor added.
-LEAST_PART = 0.5
 #: Pieces that may not lose all that is outside of an outline are cut so far outside of it, mm.
 BEYOND_MM = (1.0, 2.0, 4.0, 8.0, 16.0)
 #: Share of a piece that stays where it is cut along an outline: less would be necks alone.
@@ -357,6 +365,7 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
     gaps = shapely.get_parts(missing)
     gaps = gaps[shapely.area(gaps) > LEAST_PART]
     rims = shapely.intersects(gaps, state.outline.boundary)
+    coarse = shapely.simplify(placed, COARSE)
     for by_shares in (True, False):
         piece, gap = shapely.STRtree(gaps).query(shaping.placed(state.turn), predicate="dwithin", distance=TOUCHED)
         worth = np.bincount(piece, shapely.area(gaps)[gap], len(placed))
@@ -364,12 +373,12 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
             near = gap[piece == index]
             beside = near[rims[near]]
             at_rim = (
-                shared(_together(gaps[beside]), placed[index].buffer(reach, quad_segs=ZONE_CHORDS))
+                shared(together(gaps[beside]), coarse[index].buffer(reach, quad_segs=ZONE_CHORDS))
                 if len(beside)
                 else Polygon()
             )
             if by_shares:
-                inside = _together(gaps[near[~rims[near]]])
+                inside = together(gaps[near[~rims[near]]])
                 needed = united(inside, shared(at_rim, state.shares[index]))
                 share = shared(state.shares[index], shared(state.outline, at_rim.buffer(reach, quad_segs=ZONE_CHORDS)))
                 want = needed if share.is_empty else united(needed, share)
@@ -382,11 +391,6 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
                 spent += beyond
                 gaps[near] = [less(one, added) for one in gaps[near]]
     return spent
-
-
-def _together(gaps: GeometryArray) -> BaseGeometry:
-    """Gaps, of which no two overlap, as one shape."""
-    return shapely.MultiPolygon(shapely.get_parts(gaps).tolist())
 
 
 def _extended(
@@ -410,9 +414,9 @@ def _extended(
     motion, body, here = shaping.motion, shaping.bodies[index], np.array([index])
     mine, missed = motion.brought_back(np.array([want, needed], dtype=object), here[[0, 0]], state.turn)
     limit = motion.brought_back(np.array([other.outline], dtype=object), here, other.turn)[0]
-    mine = mine.buffer(OVERLAP)
     within = limit.contains(mine)  # most pieces are: then what is free of them is, too
-    free = less(mine, shaping.blocked(index, less(mine, body)))
+    new = less(mine, body).buffer(OVERLAP, join_style="mitre")
+    free = shaping.free(index, new)
     inside = free if within else shared(free, limit)
     may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and free.area - inside.area > LEAST_PART
     for room in (free, inside) if may_stick_out else (inside,):
@@ -442,7 +446,7 @@ def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:
         if room.area < LEAST_PART:
             continue
         room = room.buffer(OVERLAP, join_style="mitre")
-        more = shaping.with_more(index, less(room, shaping.blocked(index, room)))
+        more = shaping.with_more(index, shaping.free(index, room))
         if more is not None and more[0].area > body.area + LEAST_PART:
             shaping.add(index, *more)
 

@@ -40,10 +40,12 @@ ROUNDS = 6
 SNAPPED_MM = 1e-6
 #: Parts added to a piece overlap it by this, mm, so that they hold together in floating point.
 OVERLAP = 0.004
+#: Parts smaller than this, mm2, are neither cut off nor added.
+LEAST_PART = 0.5
 #: Differences between polygons that are smaller, mm2, are those of rounding.
 TOO_SMALL = 1e-3
 #: Vertices that lie nearer than this, mm, to the line between their neighbours are left out.
-STRAIGHT = 0.002
+STRAIGHT = 0.005
 #: Areas between necks are larger by this, mm, all round than the shapes that they are parts of: edges that nearly
 #: coincide take overlays six times as long.
 CLEAR = 1e-4
@@ -100,7 +102,6 @@ class Shaping:
     broken: set[int] = field(default_factory=set)
     weak: set[int] = field(default_factory=set)  #: nodes whose pins have no wall, or no neck to their piece
     cutting: set[int] = field(default_factory=set)  #: nodes whose ears cut a neck
-    _swept: dict[int, tuple[IntArray, GeometryArray]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         planes = np.unique(self.motion.plane).tolist()
@@ -341,13 +342,14 @@ class Shaping:
         drift = motion.seen_drift(ear // 4, seen, centre)
         return swept_discs(centre, drift, motion.sense[seen] * motion.opening, grown, NOTCH_TOLERANCE)
 
-    def _sweeps(self, index: int) -> tuple[IntArray, GeometryArray]:
-        """Ears that may touch a panel, as flat indices of corners, and their sweeps (K, 3)."""
-        if index not in self._swept:
-            mover, seen = self._reached_ears
-            mover = mover[seen == index]
-            self._swept[index] = mover, self._swept_ears(mover, np.full(len(mover), index))
-        return self._swept[index]
+    @cached_property
+    def _sweeps(self) -> list[tuple[GeometryArray, shapely.STRtree]]:
+        """Sweeps (K,) of the ears that may touch each panel, and a tree of them."""
+        mover, seen = self._reached_ears
+        order = np.argsort(seen, kind="stable")
+        swept = self._swept_ears(mover[order], seen[order])
+        ends = np.cumsum(np.bincount(seen, minlength=len(self.bodies)))[:-1]
+        return [(one.ravel(), shapely.STRtree(one.ravel())) for one in np.split(swept, ends)]
 
     @cached_property
     def ear_distances(self) -> tuple[IntArray, IntArray, FloatArray]:
@@ -363,37 +365,40 @@ class Shaping:
         corners = motion.corners.ravel()
         return first, second, motion.distance_on_arc(corners[second], corners[first], first // 4, second // 4)
 
-    def blocked(self, index: int, window: BaseGeometry) -> BaseGeometry:
-        """The area near a window that others need in the plane of piece ``index``, seen from it."""
-        motion, options = self.motion, self.options
-        if window.is_empty:
-            return Polygon()
-        grown = options.clearance_mm + BODY_TOLERANCE
-        left, bottom, right, top = window.bounds
-        box = (left - grown, bottom - grown, right + grown, top + grown)
-        boxes = shapely.bounds(shapely.get_parts(window)) + grown * np.array([-1.0, -1.0, 1.0, 1.0])
+    def free(self, index: int, area: BaseGeometry) -> BaseGeometry:
+        """The part of an area that no other piece of its plane needs, seen from a piece.
+
+        Parts below ``LEAST_PART`` are left out.
+        """
+        free = _worthwhile(area)
+        if len(free):
+            ears, tree = self._sweeps[index]
+            touching = np.unique(tree.query(free, predicate="intersects")[1])
+            free = _worthwhile(less(together(free), united(*ears[touching])))
+        if len(free):
+            free = _worthwhile(less(together(free), self._swept_bodies(index, free)))
+        return together(free)
+
+    def _swept_bodies(self, index: int, parts: GeometryArray) -> BaseGeometry:
+        """Area near some parts that other pieces sweep with their clearance, seen from a piece."""
+        motion = self.motion
+        grown = self.options.clearance_mm + BODY_TOLERANCE
+        boxes = shapely.bounds(parts) + grown * np.array([-1.0, -1.0, 1.0, 1.0])
+        (left, bottom), (right, top) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
         middle, half = 0.5 * complex(left + right, bottom + top), 0.5 * abs(complex(right - left, top - bottom))
+        others = self._parts[int(motion.plane[index])]
+        moving = np.flatnonzero(others.owner != index)
+        here = np.full(len(moving), index)
+        apart = motion.distance_on_arc(np.full(len(moving), middle), others.centre[moving], others.owner[moving], here)
+        moving = moving[apart <= half + others.radius[moving]]
+        corners = others.corners[moving]
+        drifts = motion.seen_drift(others.owner[moving], here[: len(moving)], corners)
         turn = float(motion.sense[index]) * motion.opening
-
-        def near(mover: IntArray, place: ComplexArray, radius: FloatArray | float) -> BoolArray:
-            seen = np.full(len(mover), index)
-            return motion.distance_on_arc(np.full(len(mover), middle), place, mover, seen) <= half + grown + radius
-
-        parts = self._parts[int(motion.plane[index])]
-        moving = parts.owner != index
-        moving[moving] = near(parts.owner[moving], parts.centre[moving], parts.radius[moving])
-        owner = parts.owner[moving]
-        drifts = motion.seen_drift(owner, np.full(len(owner), index), parts.corners[moving])
-        hulls = swept_hulls(parts.corners[moving], drifts, turn, BODY_TOLERANCE, boxes)
-        zone = window.buffer(grown, quad_segs=ZONE_CHORDS)
+        hulls = swept_hulls(corners, drifts, turn, BODY_TOLERANCE, boxes)
+        zone = shapely.buffer(together(parts), grown, quad_segs=ZONE_CHORDS)
         shapely.prepare(zone)
-        bodies = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
-        mover, swept = self._sweeps(index)
-        ears = swept[
-            near(mover // 4, motion.corners.ravel()[mover], 0.5 * options.ear_mm + options.clearance_mm)
-        ].ravel()
-        touching = ears[shapely.intersects(zone, ears)]
-        return shapely.union_all([*shapely.clip_by_rect(touching, *box), bodies])
+        swept: BaseGeometry = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
+        return swept
 
     def held_together(self, index: int, shape: BaseGeometry) -> Polygon | None:
         """The part of a shape that has all ears of a piece, and nothing narrower than a neck.
@@ -563,6 +568,17 @@ def shared(shape: BaseGeometry, other: BaseGeometry) -> BaseGeometry:
 def united(*shapes: BaseGeometry) -> BaseGeometry:
     """The areas of several shapes together."""
     return _areas(_overlay(shapely.union_all, shapes)) if shapes else Polygon()
+
+
+def together(parts: GeometryArray) -> BaseGeometry:
+    """Polygons, of which no two overlap, as one shape."""
+    return shapely.MultiPolygon(shapely.get_parts(parts).tolist())
+
+
+def _worthwhile(shape: BaseGeometry) -> GeometryArray:
+    """The parts of a shape that are not too small."""
+    parts: GeometryArray = shapely.get_parts(shape)
+    return parts[shapely.area(parts) >= LEAST_PART]
 
 
 def _overlay(overlay: Callable[..., BaseGeometry], *shapes: BaseGeometry | Sequence[BaseGeometry]) -> BaseGeometry:

@@ -47,7 +47,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.sheet_size import sized
 from kirigami_studio.project.store import save
-from kirigami_studio.project.target_parts import parts_as_cut, scale_of, with_part, with_parts
+from kirigami_studio.project.target_parts import parts_as_cut, scale_of, twins, with_part, with_parts
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
@@ -86,6 +86,7 @@ from kirigami_studio.studio.making import (
 )
 from kirigami_studio.studio.part_sheets import exporting_parts, folder_name, part_names, placed_layouts, worst_of
 from kirigami_studio.studio.targets import PieceRead
+from kirigami_studio.studio.two_states import shown_match
 from kirigami_studio.studio.verdict import RANK, Verdict, refused
 
 #: Files of a design, by their roles.
@@ -159,7 +160,10 @@ def design(arguments: argparse.Namespace) -> int:
             one(name, pieces[0].outline)
             return
         whole = with_parts(Document(settings=wanted, fabrication=fabrication), [(p.outline, p.place) for p in pieces])
-        designs = [designed(job_of_part(part), line) for part in parts_as_cut(whole)]
+        parts, designs = parts_as_cut(whole), list[DesignOutcome]()
+        for part, first in zip(parts, twins(parts), strict=True):
+            made = designed(job_of_part(part), line) if first == len(designs) else designs[first].again_for(part)
+            designs.append(made)
         found = parts_of(whole, designs, folder_for(name) if arguments.out else None)
         if batch or arguments.json:
             print_json(({"source": name} if batch else {}) | found.to_json([warn(name, p.outline) for p in pieces]))
@@ -207,6 +211,14 @@ class DesignOutcome:
     contents: Mapping[str, bytes] = field(default_factory=dict)
     #: What is not as it was asked for: no design is trimmed, or another one than the best is cut
     notes: tuple[Note, ...] = ()
+
+    def again_for(self, part: Document) -> DesignOutcome:
+        """The same designs for another part of this shape and size."""
+        target, document = part.target, self.request.document
+        assert target is not None and document is not None  # parts have one, and so has a design that was just made
+        result = replace(self.result, request=replace(self.result.request, target=target))
+        own = CutRequest.of(replace(document, target=target, place=part.place))
+        return replace(self, result=result, request=replace(own, as_cut=self.request.as_cut))
 
     def save(self, folder: Path) -> dict[str, str]:
         """Write the files; returns their paths by role."""
@@ -455,10 +467,16 @@ def summary(result: Result, construction: Construction) -> dict[str, object]:
     if result.best.trim is not None:
         answer["trimmed_iou"] = result.best.trim.iou
     answer["families"] = {
-        family.value: {"place": place, "match": one.match, "given_up": one.given_up}
+        family.value: {
+            "place": place,
+            "match": shown_match(one, _as_cut_in(result, one)),
+            "given_up": one.given_up,
+        }
         for family, (place, one) in first_of_families(result.candidates).items()
     }
-    why = why_covered(result.candidates, result.request.target, result.request.start)
+    request = result.request
+    # What panels of pinned sheets show says little of their pieces.
+    why = None if request.pinned else why_covered(result.candidates, request.target, request.start)
     if why is not None:
         answer["why_covered"] = {"code": why.code, "text": why.text}
     limit = limit_of_run(result)
@@ -475,22 +493,30 @@ def candidates_json(result: Result, construction: Construction) -> list[dict[str
     ranking, candidates = result.ranking, result.candidates
     reasons, groups = ranking.reasons(candidates), look_alikes(candidates, ranking)
     return [
-        candidate_json(candidate, ranking, result.as_cut.get(candidate))
+        candidate_json(candidate, ranking, _as_cut_in(result, candidate))
         | {"rank_reason": reason.text, "group": group, **kind}
         for candidate, reason, group in zip(candidates, reasons, groups, strict=True)
     ]
 
 
-def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None) -> dict[str, object]:
+def _as_cut_in(result: Result, candidate: Candidate) -> AsCut | None:
+    """How a design of a run does as cut, as far as that is known."""
+    found = result.as_cut.get(candidate)
+    return found if isinstance(found, AsCut) else None
+
+
+def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: AsCut | None = None) -> dict[str, object]:
     """One entry of ``candidates``: a sheet file with score and provenance.
 
-    ``as_cut`` is how it does as cut, null where its cuts cannot be planned.
+    ``match`` is the one that everything shows: of pieces put together, of the trimmed or the whole sheet.  ``as_cut``
+    is how it does as cut, null where its cuts cannot be planned.
     """
     even = candidate.score.evenness
     entry: dict[str, object] = {
         **sheet_json(candidate.sheet),
         "grid": list(candidate.sheet.grid),
         **candidate.score.to_json(),
+        "match": shown_match(candidate, as_cut),
         "seed": candidate.seed,
         "index": candidate.index,
         "polished": candidate.polished,
@@ -499,7 +525,7 @@ def candidate_json(candidate: Candidate, ranking: Ranking, as_cut: object = None
         "least_feature_mm": even.least_feature_mm(ranking.width_mm),
         "at_limit": even.at_limit,
         "cuttable": ranking.cuttable(candidate),
-        "as_cut": as_cut.to_json() if isinstance(as_cut, AsCut) else None,
+        "as_cut": None if as_cut is None else as_cut.to_json(),
         "family": candidate.family.value,
         "outline": [ring.tolist() for ring in _silhouette(candidate)],
     }

@@ -113,7 +113,7 @@ def _export(arguments: argparse.Namespace, alone: bool = False) -> int:
     if alone and (writes_parts(document, output) or request.is_pinned or writes_layers(request, output)):
         raise UsageError("export.several_files")
     if writes_parts(document, output):
-        return _export_parts(with_settings(document, settings), output, as_json=arguments.json)
+        return _export_parts(with_settings(document, settings), output, fixes=arguments.fixes, as_json=arguments.json)
     angle = None if arguments.at_deg is None else math.radians(arguments.at_deg)
     if not arguments.all and not writes_layers(request, output):
         find_writer(arguments.out)
@@ -144,6 +144,9 @@ def _export(arguments: argparse.Namespace, alone: bool = False) -> int:
     if output.has_pdf:
         notes += page_notes(plan.copies.spread_mm, settings.paper)
     warnings = [note.text for note in notes]
+    if document.other_parts:
+        shown = "" if document.target is None else document.target.name
+        warnings.append(tr("This file shows the part '{name}' alone; --part takes another.", name=shown))
     if names := ", ".join(name for name in found.older if name not in found.removed):
         warnings.append(
             tr("The folder has files of an earlier export: {names}. Delete what you do not want to cut.", names=names)
@@ -220,16 +223,25 @@ def _export(arguments: argparse.Namespace, alone: bool = False) -> int:
     return 0 if found.ok else 1
 
 
-def _export_parts(document: Document, output: Output, *, as_json: bool) -> int:
+def _export_parts(document: Document, output: Output, *, fixes: bool, as_json: bool) -> int:
     """Write the sheets of all parts of a project, and report on each."""
-    for request in part_requests(document):
+    requests = part_requests(document)
+    for request in requests:
         check_connectors(request.candidate, request.settings.options)
     *_, found = exporting_parts(document, output, True, never)
     assert isinstance(found, ExportedFiles)  # all pages of a PDF are wanted
+    verdicts = [(request, one.verdict) for request, one in zip(requests, found.parts, strict=True)]
+    advice = [_advice(one, said) if fixes and said is not None and not said.ok else None for one, said in verdicts]
     if as_json:
-        print_json(parts_json(found) | {"files": [str(path) for path in found.files]})
+        answer = parts_json(found) | {"files": [str(path) for path in found.files]}
+        each = zip((_part_json(part) for part in found.parts), advice, strict=True)
+        print_json(answer | {"parts": [one | _advice_json(some) for one, some in each]})
     else:
         say_parts(found)
+        for part, some in zip(found.parts, advice, strict=True):
+            if some is not None:
+                say(f"{part.part}:")
+                _say_advice(some)
         for path in found.files:
             say(f"  {path}")
     return 0 if found.ok else 1

@@ -39,6 +39,7 @@ from kirigami_studio.evaluate.kept_panels import (
 )
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.lattice.left_corners import parts_with_corners
 
 #: What sticks out counts so much more than what is missed: strips around hinges look worse than a short edge.
 STICKING_OUT = 1.5
@@ -50,8 +51,8 @@ MOSTLY = 0.5
 LEAST_GAIN, ROUNDS = 1e-3, 4
 #: A symmetric sheet keeps its symmetry where shares on the target differ by no more than this from their image's.
 ALIKE = 0.1
-#: Nearer than this (unit cells) a part reaches a hinge; and how often hinges that two parts reach are given back.
-AT_HINGE, GIVEN_BACK = 0.03, 4
+#: How often hinges that two parts reach are given back.
+GIVEN_BACK = 4
 #: Nearer than this (unit cells) shapes touch.
 TOUCH = 1e-7
 #: Width of a way out of a notch as a share of ``keep``: wider than the kerf, for connectors need more than that.
@@ -346,9 +347,7 @@ class _NotchCut:
 
     def _reached(self, shapes: GeometryArray, first: int = 0) -> BoolArray:
         """Which corners the part of each panel, from number ``first`` on, reaches: (P, 4)."""
-        corners = shapely.points(self._corners[first : first + len(shapes)])
-        reached: BoolArray = shapely.distance(corners, shapes[:, None]) < AT_HINGE
-        return reached
+        return parts_with_corners(shapes, self._corners[first : first + len(shapes)])
 
 
 def hinges_of(voids: BoolArray) -> BoolArray:

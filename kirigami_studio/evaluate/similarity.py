@@ -63,6 +63,11 @@ class Similarity:
             self.factor * first.factor, self.factor * complex(*first.shift) + complex(*self.shift)
         )
 
+    def part(self, share: float) -> Similarity:
+        """A share (0..1) of the way from staying in place to this transform."""
+        x, y = self.shift
+        return Similarity(self.scale**share, share * self.angle, (share * x, share * y))
+
     def to_json(self) -> dict[str, object]:
         """Plain numbers: ``scale``, ``angle`` (radians) and ``shift`` [x, y]."""
         return {"scale": self.scale, "angle": self.angle, "shift": list(self.shift)}

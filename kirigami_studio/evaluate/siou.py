@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.evaluate.alignment import align_many, align_near
 from kirigami_studio.evaluate.boundary import as_plane, checked_polygon
@@ -30,6 +31,8 @@ from kirigami_studio.outlines.outline import Outline
 PIXELS_OFF, ROUNDING = 1e-3, 1e-4
 #: A silhouette that reaches this many times as far from the middle as the target is not laid upon it.
 FARTHEST = 10.0
+#: IoU by which another pose of a symmetric shape has to be better than the one nearby.
+ANOTHER_POSE = 5e-4
 #: Turns at which a silhouette with holes is tried, and how often half a step to either side is.
 TURNS, HALVINGS = 24, 8
 
@@ -53,30 +56,48 @@ def siou_of_many(shapes: Sequence[FloatArray], target: Outline) -> list[ShapeMat
 
 
 def iou_of_area(area: shapely.Polygon, target: Outline) -> float:
-    """Exact IoU of an area in its best pose, open where that is mostly a hole of the target.
+    """Exact IoU of an area in its best pose, see :func:`pose_of_area`."""
+    return pose_of_area(area, target)[0]
+
+
+def shown_area(laid: shapely.Polygon, target: shapely.Polygon) -> BaseGeometry:
+    """Area over a target as it counts: filled, open where that is mostly a hole of the target."""
+    missing = shapely.difference(shapely.Polygon(target.exterior), target)
+    openings = np.array([shapely.Polygon(opening) for opening in laid.interiors], dtype=object)
+    mostly = shapely.area(shapely.intersection(openings, missing)) > 0.5 * shapely.area(openings)
+    shown: BaseGeometry = shapely.Polygon(laid.exterior).difference(shapely.union_all(openings[mostly]))
+    return shown
+
+
+def pose_of_area(area: shapely.Polygon, target: Outline, near: Similarity | None = None) -> tuple[float, Similarity]:
+    """Exact IoU of an area in its best pose, and that pose: from its frame to the target's.
 
     Outer rings alone do not tell how a face on a disc is turned: of all turns the one counts at which holes match too.
+    Symmetric shapes have several poses that are as good: then the one that is found from ``near`` on uphill.
     """
     ring = shapely.get_coordinates(area.exterior)[:-1]
     (match,) = siou_of_many([ring], target)
+    if near is not None:
+        nearby = siou_near(ring, target, near)
+        match = nearby if nearby.iou_exact > match.iou_exact - ANOTHER_POSE else match
     if not target.holes:
-        return match.iou_exact
-    missing = shapely.difference(shapely.Polygon(target.points), target.polygon)
+        return match.iou_exact, match.transform
 
     def turned(angle: float) -> float:
         laid = shapely.transform(area, Similarity(1.0, angle).compose(match.transform).apply)
-        openings = np.array([shapely.Polygon(opening) for opening in laid.interiors], dtype=object)
-        mostly = shapely.area(shapely.intersection(openings, missing)) > 0.5 * shapely.area(openings)
-        shown = shapely.Polygon(laid.exterior).difference(shapely.union_all(openings[mostly]))
+        shown = shown_area(laid, target.polygon)
         common = float(shown.intersection(target.polygon).area)
         return common / (float(shown.area) + target.polygon.area - common)
 
     step = 2.0 * math.pi / TURNS
-    best, angle = max((turned(step * number), step * number) for number in range(TURNS))
+    best, angle = max(((turned(step * number), step * number) for number in range(TURNS)), key=lambda one: one[0])
+    straight = turned(0.0)
+    if straight > best - ANOTHER_POSE:
+        best, angle = straight, 0.0
     for halving in range(1, HALVINGS + 1):
         around = (angle - step / 2**halving, angle + step / 2**halving)
         best, angle = max((best, angle), *((turned(other), other) for other in around))
-    return best
+    return best, Similarity(1.0, angle).compose(match.transform)
 
 
 def siou_near(shape: FloatArray, target: Outline, pose: Similarity) -> ShapeMatch:

@@ -321,7 +321,7 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         stroke_colour(canvas, EDGES[shape.layer])
         for at, ring in enumerate(shape.rings):
             _ink(canvas, FILLS[shape.layer] if at == 0 else picture.PAPER)
-            canvas.drawPath(path_of(corner + scale * ring, closed=True), stroke=1, fill=1, fillMode=1)
+            canvas.drawPath(path_of(corner + _coarse(scale * ring), closed=True), stroke=1, fill=1, fillMode=1)
         stroke_colour(canvas, picture.NAME_COLOUR)
         for line in shape.lines:
             coarse = shapely.simplify(LineString(scale * line), UNSEEN_MM)

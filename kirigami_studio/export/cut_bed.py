@@ -45,6 +45,8 @@ LAYERS, BOARD = 2, "board"
 CLEAR_OF_MARK_MM = 0.5
 #: Designs whose beds are kept, with the order of their cuts.
 MOST_KEPT = 16
+#: Areas whose fillets are kept: files are compared with what their cuts were made from.
+MOST_CLOSED = 1024
 #: Chords of a quarter circle where the room round holes is measured.
 ROUND = 16
 
@@ -151,6 +153,7 @@ def beam_chords(half_mm: float) -> int:
     return math.ceil(0.25 * math.pi / math.acos(1.0 - min(1.0, BEAM_CHORD_MM / abs(half_mm)))) if half_mm else 1
 
 
+@lru_cache(maxsize=MOST_CLOSED)
 def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
     """The area that a beam round it leaves: with fillets where it turns inwards."""
     if half_mm == 0.0:

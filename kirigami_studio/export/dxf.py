@@ -17,6 +17,7 @@ import numpy as np
 from ezdxf import units, zoom
 from ezdxf._options import options
 from ezdxf.document import Drawing
+from ezdxf.entities.lwpolyline import LWPolylinePoints
 from ezdxf.filemanagement import new
 
 from kirigami_studio.export.design_record import record_pieces
@@ -154,19 +155,22 @@ def _sort_classes(document: Drawing) -> None:
 def _draw(document: Drawing, strokes: Sequence[Stroke], version: str) -> None:
     modelspace = document.modelspace()
     for stroke in strokes:
-        bent = stroke.bulges is not None
-        rows = stroke.points if stroke.bulges is None else np.column_stack([stroke.points, stroke.bulges])
-        points = rows.tolist()
         attributes = {"layer": stroke.layer, "color": stroke.colour}
         if stroke.circle:
             right, left = stroke.points.tolist()
             modelspace.add_circle((0.5 * (right[0] + left[0]), right[1]), 0.5 * (right[0] - left[0]), attributes)
             continue
-        form = "xyb" if bent else "xy"
+        # x, y, widths at both ends, bulge
+        table = np.zeros((len(stroke.points), LWPolylinePoints.VERTEX_SIZE))
+        table[:, :2] = stroke.points
+        table[:, 4] = 0.0 if stroke.bulges is None else stroke.bulges
         if version == "R12":
-            modelspace.add_polyline2d(points, format=form, close=stroke.closed, dxfattribs=attributes)
+            form = "xy" if stroke.bulges is None else "xyseb"
+            rows = table[:, : len(form)].tolist()
+            modelspace.add_polyline2d(rows, format=form, close=stroke.closed, dxfattribs=attributes)
         else:
-            modelspace.add_lwpolyline(points, format=form, close=stroke.closed, dxfattribs=attributes)
+            line = modelspace.add_lwpolyline((), close=stroke.closed, dxfattribs=attributes)
+            line.lwpoints = LWPolylinePoints(table.tolist())  # one by one takes ten times as long
 
 
 def _frame(document: Drawing, size: tuple[float, float]) -> None:

@@ -20,7 +20,7 @@ from ezdxf.document import Drawing
 from ezdxf.entities.arc import Arc
 from ezdxf.entities.circle import Circle
 from ezdxf.entities.dxfentity import DXFEntity
-from ezdxf.entities.lwpolyline import LWPolyline
+from ezdxf.entities.lwpolyline import LWPolyline, LWPolylinePoints
 from ezdxf.entities.polyline import Polyline
 from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import readfile
@@ -121,7 +121,7 @@ def _content(document: Drawing) -> FileContent:
     strokes, others = [], []
     for entity in document.modelspace():
         if isinstance(entity, LWPolyline):
-            table = np.array(entity.get_points("xyb"), dtype=np.float64).reshape(-1, 3)
+            table = np.array(entity.lwpoints.values).reshape(-1, LWPolylinePoints.VERTEX_SIZE)[:, [0, 1, 4]]
             closed = bool(entity.closed)
         elif isinstance(entity, Polyline):
             rows = [(v.dxf.location.x, v.dxf.location.y, v.dxf.bulge) for v in entity.vertices]

@@ -51,6 +51,7 @@ class ExportJob:
     printing: Printing = field(default_factory=Printing)
     thickness_mm: float = 1.0  #: Of the material, for models of rigid parts
     pieces: PosedPieces | None = None  #: Shown in pictures of a design that is made of pieces, not its panels
+    match: float | None = None  #: 0..1; IoU of its pieces with the target; None where the sheet's own is shown
 
     @classmethod
     def of(cls, candidate: Candidate, target: ShapeRings, plan: CutPlan | None = None) -> ExportJob:

@@ -9,16 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import shapely
-from shapely.geometry import Polygon
 
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.lattice.deployment import Deployment
-
-#: Nearer than this (unit cells) what stays of a trimmed panel reaches its corner.
-AT_HINGE = 0.03
+from kirigami_studio.lattice.left_corners import left_corners
 
 
 def linkage_of(job: ExportJob) -> Assembly:
@@ -40,6 +36,7 @@ def _parts(
     """The parts of all panels, row by row, and hinges where two of them reach a node."""
     nodes = sheet.topology.panel_nodes
     columns = nodes.shape[1]
+    left = left_corners(kept, sheet.compact[nodes.reshape(-1, 4)] + low)
     pieces: list[Piece] = []
     reached: dict[int, list[Piece]] = {}
     for number, (corners, part) in enumerate(zip(nodes.reshape(-1, 4), kept, strict=True)):
@@ -50,8 +47,7 @@ def _parts(
         row, column = divmod(number, columns)
         piece = Piece(f"P{row + 1}.{column + 1}", 1, (row, column), (outline - origin) * cell_mm)
         pieces.append(piece)
-        near = shapely.distance(shapely.points(sheet.compact[corners]), Polygon(outline)) < AT_HINGE
-        for node in corners[near].tolist():
+        for node in corners[left[number]].tolist():
             reached.setdefault(node, []).append(piece)
 
     def own(piece: Piece, node: int) -> FloatArray:

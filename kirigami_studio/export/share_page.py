@@ -111,7 +111,7 @@ def page_of(job: ExportJob, stem: str) -> tuple[str, dict[str, Any]]:
         "language": language(),
         "generator": f"Kirigami Studio {__version__}",
         "title": name,
-        "subtitle": _subtitle(job, posed, outlines),
+        "subtitle": _subtitle(job, posed),
         "noscript": tr("This page moves by its own script. Allow scripts to see it."),
         "play": tr("Play"),
         "pause": tr("Pause"),
@@ -150,18 +150,14 @@ def _digest(text: str) -> str:
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
 
 
-def _subtitle(job: ExportJob, posed: PosedDesign, outlines: Outlines) -> str:
+def _subtitle(job: ExportJob, posed: PosedDesign) -> str:
     """Match, grid and width."""
     rows, columns = job.deployment.sheet.grid
     grid = tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=rows, columns=columns)
     size = tr("{width:g} mm wide when flat", width=job.width_mm)
-    match = None if job.trim is None or job.pieces is not None else job.trim.iou
+    match = job.match if job.trim is None or job.match is not None else job.trim.iou
     if match is None and job.target is not None:
-        if job.pieces is None:
-            shape = shapely.make_valid(shapely.Polygon(posed.outline(posed.nodes(posed.phi_target), posed.phi_target)))
-        else:  # the silhouette of both layers
-            whole = shapely.union_all(shapely.make_valid(list(map(shapely.Polygon, outlines(posed.phi_target)))))
-            shape = shapely.union_all(shapely.polygons([part.exterior for part in shapely.get_parts(whole)]))
+        shape = shapely.make_valid(shapely.Polygon(posed.outline(posed.nodes(posed.phi_target), posed.phi_target)))
         outer, *holes = as_rings(job.target)
         target = shapely.Polygon(outer, holes)
         match = shape.intersection(target).area / shape.union(target).area

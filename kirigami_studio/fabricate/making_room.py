@@ -56,7 +56,10 @@ DAMPED_FROM = 5
 UNDECIDED = 1e-3
 #: Of the outline's area, what may change at most.  Where more would have to, shorter distances are asked for.
 CHANGED_SHARE = 0.01
-SHARES = (1.0, 0.8, 0.6, 0.4, 0.2)
+#: Where all of them would take too much, the least is tried next: where that does, too, none of the others fits.
+SHARES = (1.0, 0.2, 0.8, 0.6, 0.4)
+#: From the round on in which steps are damped, a search ends that is so many times beyond what may change.
+BEYOND = 5.0
 #: Weight (mm^2) of a change of a ratio by a factor of e against the outline's displacement.
 RATIO_WEIGHT = 0.05
 #: Conditions that are met by more than so many spans are left out.
@@ -97,11 +100,20 @@ def with_room(
     """
     with one_blas_thread():
         programme = _programme(deployment, width_mm, spans, table, removed)
+        if programme.hopeless:
+            return deployment
+        room = deployment
         for share in SHARES:
             found = programme.solve(share, go_on)
-            if found is None or programme.changed_share(found) <= CHANGED_SHARE:
-                return deployment if found is None else found
-    return deployment
+            if found is None:
+                return deployment
+            if programme.changed_share(found) <= CHANGED_SHARE:
+                if share > min(SHARES):
+                    return found
+                room = found
+            elif share == min(SHARES):
+                return deployment
+    return room
 
 
 def roomy(
@@ -187,6 +199,8 @@ class _Programme:
             missing = np.concatenate([self._missing(design, z, share), near.missing])
             if missing.max(initial=0.0) <= MET_MM:
                 return None if turn == 0 else design
+            if turn > DAMPED_FROM and self.changed_share(design) > BEYOND * CHANGED_SHARE:
+                break
             step = self._step(design, z, similar, share, missing, near)
             step *= 1.0 if turn < DAMPED_FROM else 0.5
             z = z + np.clip(step[: z.size], -LARGEST_STEP, LARGEST_STEP)
@@ -199,6 +213,13 @@ class _Programme:
     def met(self) -> bool:
         """Whether the design has all the room that is wanted."""
         return float(self._missing(self._design, self._z, 1.0).max(initial=0.0)) <= MET_MM
+
+    @property
+    def hopeless(self) -> bool:
+        """Whether connectors are wider than the summed length of all cuts of the silhouette."""
+        ends = self._scale * self._design.compact[self._table.ends]
+        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        return float(self._hinge_spans.sum()) > float(length.sum())
 
     def changed_share(self, design: Deployment) -> float:
         """Share of its area by which the closed outline differs after the best similarity."""

@@ -23,6 +23,7 @@ from kirigami_studio.fabricate.slits import CutTable
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
+from kirigami_studio.lattice.left_corners import left_corners
 
 #: Vertices are snapped to this grid (mm), a hundredth of what plans are rounded to.
 GRID_MM = 1e-6
@@ -53,8 +54,6 @@ ROUND_SHARE = 1.01
 CRUMB_MM2 = 5e-3
 #: How often crumbs are trimmed away; more than one round is rare.
 CRUMB_ROUNDS = 4
-#: Nearer than this (unit cells) what stays of a panel reaches its corner; deep trims leave more or nothing.
-AT_HINGE = 0.02
 #: Directions in which a notch is longer than so many kerfs (and the overcut) are no way out of it.
 LONGEST_NOTCH = 15.0
 
@@ -115,11 +114,7 @@ def lost_hinges(deployment: Deployment, kept: Sequence[FloatArray | None], table
         As for :func:`kept_area`.
     """
     nodes = deployment.topology.panel_nodes.reshape(-1, 4)
-    reached = np.ones(nodes.shape, dtype=np.bool_)
-    for number, part in enumerate(kept):
-        if part is not None:
-            corners = shapely.points(deployment.compact[nodes[number]])
-            reached[number] = shapely.distance(corners, Polygon(part)) < AT_HINGE if len(part) else False
+    reached = left_corners(kept, deployment.compact[nodes])
     holding = np.bincount(nodes.ravel(), reached.ravel())[table.hinge_node]
     return tuple(np.flatnonzero(holding < 2).tolist())
 

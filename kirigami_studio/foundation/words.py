@@ -13,8 +13,10 @@ import re
 import string
 from collections.abc import Mapping
 from pathlib import Path
+from typing import ClassVar
 
 from kirigami_studio.foundation.resources import resource
+from kirigami_studio.foundation.units import INCH, MM_PER_INCH, in_inches
 
 DOMAIN = "kirigami_studio"
 #: A folder of catalogues that is looked into before the bundled one.
@@ -50,6 +52,40 @@ _state = _State()
 _numbers = _Numbers()
 
 
+class ShownUnit:
+    """Unit of all lengths on the screen, mm or inches; values stay in mm."""
+
+    inches: ClassVar[bool] = False
+
+    @classmethod
+    def mm(cls) -> float:
+        """Millimetres in one."""
+        return MM_PER_INCH if cls.inches else 1.0
+
+    @classmethod
+    def name(cls) -> str:
+        """Its sign."""
+        return INCH if cls.inches else "mm"
+
+    @classmethod
+    def words(cls, text: str) -> str:
+        """A caption, a tooltip or a spoken name that says mm, with the shown unit."""
+        if not cls.inches:
+            return text
+        text = text.replace(tr("in millimetres"), tr("in inches"))
+        text = re.sub(r"\bin mm\b", tr("in inches"), _RANGE.sub(_range_in_inches, text))
+        return re.sub(r"\bmm\b(?!/)", INCH, text)
+
+
+#: A unit with the least and the largest number behind it, such as "mm (5 to 3000)".
+_RANGE = re.compile(r"\bmm(, | \()([\d.,]*\d) (to|bis) ([\d.,]*\d)")
+
+
+def _range_in_inches(found: re.Match[str]) -> str:
+    least, most = (number(float(part.replace(",", ".")) / MM_PER_INCH, ".3g") for part in found.group(2, 4))
+    return f"{INCH}{found[1]}{least} {found[3]} {most}"
+
+
 def mark(text: str, /) -> str:
     """Mark a sentence for the catalogue that is translated later, when it is read."""
     return text
@@ -81,7 +117,9 @@ def tr_n(one: str, many: str, count: int, /, **values: object) -> str:
 
 
 def fill(text: str, values: Mapping[str, object]) -> str:
-    """Put values into a sentence; where its format does not fit they are shown plainly."""
+    """Put values into a sentence, lengths in the shown unit, plainly where formats do not fit."""
+    if ShownUnit.inches:
+        text, values = in_inches(text, values)
     try:
         return _filled(text, values)
     except (ValueError, TypeError, RecursionError):

@@ -109,7 +109,7 @@ def _next(left: Sequence[Candidate], ranking: Ranking, losses: Mapping[Candidate
         return first
     if not ranking.least_gap_mm or len(losses) >= MOST_PIECED:
         return None
-    enough = ranking.worth(first) + WORTHWHILE
+    enough = ranking.worth_as_made(first) + WORTHWHILE
     hopeful = [one for one in left if one not in losses]
-    hopeful = [one for one in hopeful if ranking.worth(one) + HOPED * (1.0 - one.score.iou_exact) > enough]
+    hopeful = [one for one in hopeful if ranking.worth_as_made(one) + HOPED * (1.0 - one.match) > enough]
     return next(iter(ranking.ranked(hopeful)), None)

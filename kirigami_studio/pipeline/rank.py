@@ -50,6 +50,8 @@ SYMMETRY_SEEN = (0.95, 0.975)
 #: IoU that a sheet which is cut from whole is worth over one of which everything is cut away: a cover that gives up a
 #: tenth of its sheet comes first where it matches better by 1 %.
 GIVEN_UP = 0.1
+#: The same of pinned sheets: pieces of whole ones are cut along the target, too, and show both ends of the motion.
+GIVEN_UP_ON_PINS = 0.25
 #: IoU that a sheet which comes to its angle is worth over one that stays flat: jamming at 36 of 180 degrees costs 5 %.
 JAMMING = 0.25
 
@@ -132,7 +134,7 @@ class Ranking:
             "rank.thinner": scale * THIN * thinness,
             "rank.more_at_limit": scale * AT_LIMIT * figures.at_limit,
             "rank.not_symmetric": scale * SYMMETRY * (1.0 - _seen_symmetry(candidate)),
-            "rank.gives_up": scale * GIVEN_UP * candidate.given_up,
+            "rank.gives_up": scale * (GIVEN_UP_ON_PINS if self.least_gap_mm else GIVEN_UP) * candidate.given_up,
             "rank.jams": JAMMING * self.missed(candidate),
             "rank.less_as_cut": self.losses.get(candidate, 0.0),
             "rank.less_second": 0.0 if candidate.second is None else candidate.second.price,
@@ -214,7 +216,7 @@ class Ranking:
         if first.trim is not None and opens_holes(first):
             return Note.of("rank.holes_cut_out", match=100 * first.trim.iou, count=first.trim.given_up)
         if first.trim is not None and first.trim.given_up:
-            shares = {"match": 100 * first.match, "percent": 100 * first.given_up}
+            shares = {"match": 100 * self.made_match(first), "percent": 100 * first.given_up}
             return Note.of("rank.notch_cut_out", **shares, count=first.trim.given_up)
         if first.trim is not None:
             code = "rank.best_trimmed" if first.trim.iou >= most else "rank.best_balance_trimmed"

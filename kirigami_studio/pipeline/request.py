@@ -171,6 +171,11 @@ class Request(DesignChoices):
         return self.covers and self.fitted_starts > 0 and self.second is None and not self.pinned
 
     @property
+    def may_cover_pieces(self) -> bool:
+        """Whether covers may be made for pieces on pins that show the target badly."""
+        return self.covers and self.fitted_starts > 0 and self.second is None and self.upright and self.phi == 0.0
+
+    @property
     def even(self) -> float:
         """Weight of even panels in fits, see :func:`kirigami_studio.polish.even_panels.even_weight`."""
         return even_weight(self.regular)

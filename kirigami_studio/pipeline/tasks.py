@@ -11,6 +11,7 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.evaluate.second_target import second_matches
 from kirigami_studio.evaluate.siou import exact_iou
+from kirigami_studio.evaluate.trimming import trim
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import deploy
@@ -22,6 +23,7 @@ from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
 from kirigami_studio.pipeline.redesign import Room, covered, kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape
+from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.polish.objective import CONVERGED, FitPhase
@@ -118,6 +120,11 @@ class GuidedTask:
     way: Way
     hand: int = 0
 
+    @property
+    def pose(self) -> tuple[float, Symmetry | None, int]:
+        """Where it begins, whatever its way."""
+        return self.angle, self.symmetry, self.hand
+
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit the way that the task says."""
         grid, options = request.chosen_grid, request.fit_options
@@ -207,10 +214,43 @@ class CoverTask:
         keep = request.keep if one.trim is None else one.trim.keep
         try:
             room = Room(request.width_mm, request.span_mm)
-            made = covered(one, request.target, keep, stopped, None, least, even, room)
+            made = covered(one, request.target, keep, stopped, None, least, even, room, request.least_gap)
         except KirigamiError:
             return TaskResult(None, 1)
         return TaskResult(made.candidate, made.evaluations)
+
+
+@dataclass(frozen=True, slots=True)
+class PinnedCoverTask:
+    """Fit a pinned sheet to the target with its notches filled, and give up the panels in them.
+
+    The fit begins with the pinwheel of a ``hand``; notches are filled until the shape turns back by ``easy`` (radians).
+    """
+
+    index: int
+    angle: float
+    symmetry: Symmetry | None
+    hand: int
+    easy: float
+
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
+        """Fit and cut; nothing where the target has no such notches, or nothing would be left."""
+        filled = notches_filled(request.silhouette, self.easy, self.easy)
+        if filled is None:
+            return TaskResult(None, 0)
+        grid, options, phi = request.chosen_grid, request.fit_options, request.phi
+        way = Way.suited_to(filled.outline)[0]
+        with one_blas_thread():
+            fit = fit_from_uniform(
+                filled.outline, grid, phi, self.angle, way, options, self.symmetry, stopped, self.hand
+            )
+            try:
+                pose = filled.frame.compose(fit.pose)
+                cut = trim(deploy(fit.sheet), request.target, phi, pose, request.keep, deep=True)
+            except KirigamiError:
+                return TaskResult(None, fit.evaluations)
+        (found,) = scored(request, [fit.sheet], self.index, Origin.COVERED, fitted=True)
+        return TaskResult(replace(found, trim=cut), fit.evaluations + 1)
 
 
 def fit_target(request: Request, symmetry: Symmetry | None) -> Outline:

@@ -39,15 +39,11 @@ class BoundaryTarget:
     def nearest(self, points: FloatArray, normals: FloatArray) -> FloatArray:
         """Closest boundary points (Q, 2) to ``points`` (Q, 2) that look the way of ``normals`` (Q, 2)."""
         _, index = self._tree.query(np.concatenate([points, NORMAL_LENGTH * normals], axis=1))
-        count = len(self._start)
-        places, gaps = [], []
-        for step in (-1, 0, 1):
-            piece = (index + step) % count
-            place = _on_segment(points, self._start[piece], self._end[piece])
-            turned = np.square(self._normal[piece] - normals).sum(axis=1)
-            places.append(place)
-            gaps.append(np.square(points - place).sum(axis=1) + NORMAL_LENGTH**2 * turned)
-        best: FloatArray = np.stack(places)[np.argmin(gaps, axis=0), np.arange(len(points))]
+        piece = (index + np.arange(-1, 2)[:, None]) % len(self._start)
+        place = _on_segment(points, self._start[piece], self._end[piece])
+        turned = np.square(self._normal[piece] - normals).sum(axis=2)
+        gaps = np.square(points - place).sum(axis=2) + NORMAL_LENGTH**2 * turned
+        best: FloatArray = place[gaps.argmin(axis=0), np.arange(len(points))]
         return best
 
 
@@ -70,9 +66,16 @@ def _prepared(outline: Outline, samples: int) -> BoundaryTarget:
 
 def unit_normals(polygon: FloatArray) -> FloatArray:
     """Unit normals (L, 2) of the edges of a closed polygon (L, 2), outwards when it runs counter-clockwise."""
-    edge = np.roll(polygon, -1, axis=0) - polygon
-    length = np.maximum(np.hypot(edge[:, 0], edge[:, 1]), 1e-12)
-    normals: FloatArray = np.stack([edge[:, 1], -edge[:, 0]], axis=1) / length[:, None]
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    return normals_of(edges, np.hypot(edges[:, 0], edges[:, 1]))
+
+
+def normals_of(edges: FloatArray, length: FloatArray) -> FloatArray:
+    """The same for the ``edges`` themselves and their lengths (L,)."""
+    normals = np.empty_like(edges)
+    length = np.maximum(length, 1e-12)
+    np.divide(edges[:, 1], length, out=normals[:, 0])
+    np.divide(-edges[:, 0], length, out=normals[:, 1])
     return normals
 
 
@@ -89,8 +92,10 @@ def _at(polygon: FloatArray, arc: FloatArray, places: FloatArray) -> FloatArray:
 
 
 def _on_segment(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Closest point to each of ``points`` on its own segment."""
+    """Closest point (..., Q, 2) to each of ``points`` (Q, 2) on its own segments (..., Q, 2)."""
     edge = end - start
-    share = ((points - start) * edge).sum(axis=1) / np.maximum(np.square(edge).sum(axis=1), 1e-24)
-    place: FloatArray = start + np.clip(share, 0.0, 1.0)[:, None] * edge
-    return place
+    share = ((points - start) * edge).sum(axis=-1) / np.maximum(np.square(edge).sum(axis=-1), 1e-24)
+    np.clip(share, 0.0, 1.0, out=share)
+    edge *= share[..., None]
+    edge += start
+    return edge

@@ -77,6 +77,7 @@ def fit_cover(
     symmetry: Symmetry | None = None,
     even: float = 0.0,
     least_panel: float = 0.0,
+    least_gap: float = 0.0,
     notched: bool = False,
     room: Callable[[Deployment], Deployment] = lambda deployment: deployment,
 ) -> Cover:
@@ -97,7 +98,7 @@ def fit_cover(
         Asked before every step; the best so far is returned.
     locked : (m, n) bool, optional
         Voids whose ratio stays exactly as it is.
-    free_rim, symmetry, even, least_panel
+    free_rim, symmetry, even, least_panel, least_gap
         As for :func:`polish`.
     notched : bool
         Whether notches that no closed sheet shows are cut out in any case, and the sheet is trimmed after the fit
@@ -145,6 +146,7 @@ def fit_cover(
         trust=TRUST,
         even=even,
         least_panel=least_panel,
+        least_gap=least_gap,
         free_rim=free_rim,
         symmetry=symmetry,
         excess=EXCESS,
@@ -159,13 +161,16 @@ def fit_cover(
 
 
 @lru_cache(maxsize=16)
-def notches_filled(target: Outline, least: float = DEEP_FROM) -> EasyShape | None:
-    """Fill the narrowest notches of a target that turns back by ``least`` (radians) or more."""
+def notches_filled(target: Outline, least: float = DEEP_FROM, easy: float = EASY_TURN) -> EasyShape | None:
+    """Fill the narrowest notches of a target until it turns back by ``easy``.
+
+    None below ``least`` (radians) is filled.
+    """
     if turn_back(target).angle < least:
         return None
     for radius in DISCS:
         shape = EasyShape.of(target.polygon.buffer(radius).buffer(-radius))
-        if turn_back(shape.outline).angle <= EASY_TURN:
+        if turn_back(shape.outline).angle <= easy:
             return shape
     return EasyShape.of(target.polygon.convex_hull)
 

@@ -13,11 +13,12 @@ shallow angles.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-from scipy.sparse import block_diag, csr_matrix
+from scipy.sparse import csr_matrix
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.lattice.topology import topology
@@ -41,14 +42,11 @@ class EvenPanels:
     """The term for one grid and start outline, with weight 1."""
 
     grid: tuple[int, int]  #: (rows, columns)
-    #: (E, N), sparse; reads the panel edges off the compact nodes, scaled so that the squares' sum is their mean in
-    #: uniform edges
-    difference: csr_matrix
-    uniform: FloatArray  #: (E, 2); the same of the uniform sheet, unfolded where its start has hollows
-    stiffness: csr_matrix  #: (2 N, 2 N), sparse; second derivative of the edges' part by the nodes' x, then their y
-    #: edges and areas: Shares of edges and areas
-    edges: float
-    areas: float
+    uniform: FloatArray  #: (N, 2), unit cells; nodes of the uniform sheet, unfolded where its start has hollows
+    #: (N, N), sparse; second derivative of the edges' part by the nodes' x, and by their y
+    elastic: csr_matrix
+    pattern: PanelPattern  #: Where its entries and those of the areas' part stand in the second derivative
+    areas: float  #: Share of areas
     mean_area: float  #: unit cells squared; of the panels of the uniform sheet
     #: a number or (P,); areas that panels are pulled to, as multiples of the mean: 1, or those of a pinwheel
     asked: float | FloatArray
@@ -63,49 +61,98 @@ class EvenPanels:
         Areas count in the paper's rectangle alone, where uniform panels have one area; in other starts
         ``large_panels`` looks after them.
         """
+        square = sheet.start is None and sheet.cell == (1.0, 1.0)
+        if model is None and square:
+            return _of_rectangle(sheet.grid, EDGES, AREAS)
+        edges, areas = (EDGES, AREAS) if square else (1.0, 0.0)
+        return cls._of_shares(sheet, model, edges, areas)
+
+    @classmethod
+    def _of_shares(cls, sheet: Sheet, model: Sheet | None, edges: float, areas: float) -> EvenPanels:
         panels = topology(*sheet.grid).panel_nodes.reshape(-1, 4)
         start, end = panels.ravel(), np.roll(panels, -1, axis=1).ravel()
         nodes = deploy(unfolded(sheet.plain()) if model is None else model).compact
-        length = np.sqrt(np.square(nodes[end] - nodes[start]).sum(axis=1).mean() * start.size)
-        rows = np.arange(start.size)
-        sign = np.ones(start.size) / length
-        difference = csr_matrix(
-            (np.concatenate([sign, -sign]), (np.concatenate([rows, rows]), np.concatenate([end, start]))),
-            shape=(start.size, len(nodes)),
-        )
+        scale = 1.0 / np.sqrt(np.square(nodes[end] - nodes[start]).sum(axis=1).mean() * start.size)
+        rows = np.concatenate([np.arange(start.size)] * 2)
+        sign = np.repeat([scale, -scale], start.size)
+        difference = csr_matrix((sign, (rows, np.concatenate([end, start]))), shape=(start.size, len(nodes)))
         areas_asked = panel_areas(nodes, *sheet.grid).area
         mean = float(areas_asked.mean())
         asked = 1.0 if model is None else areas_asked / mean
-        square = sheet.start is None and sheet.cell == (1.0, 1.0)
-        edges, areas = (EDGES, AREAS) if square else (1.0, 0.0)
-        along = 2.0 * edges * (difference.T @ difference)
-        stiffness = csr_matrix(block_diag((along, along)))
-        reference = difference @ nodes
-        return cls(sheet.grid, difference, reference, stiffness, edges, areas, mean, asked, over_even(sheet))
+        elastic = csr_matrix(2.0 * edges * (difference.T @ difference))
+        pattern = PanelPattern.of(elastic, panels)
+        return cls(sheet.grid, nodes, elastic, pattern, areas, mean, asked, over_even(sheet))
 
-    def value(self, nodes: FloatArray) -> float:
-        """The shares' sum for compact ``nodes`` (N, 2): mean squares, in uniform edges and areas."""
-        value = self.edges * float(np.square(self.difference @ nodes - self.uniform).sum())
-        if self.areas:
-            value += self.areas * float(np.square(self._panels(nodes).area - self.asked).mean())
-        return value
-
-    def pull(self, nodes: FloatArray) -> FloatArray:
-        """Derivative (N, 2) of the value by the nodes."""
-        pull: FloatArray = 2.0 * self.edges * (self.difference.T @ (self.difference @ nodes - self.uniform))
-        if self.areas:
-            panels = self._panels(nodes)
-            by_area = 2.0 * self.areas / len(panels) * (panels.area - self.asked)
-            pull += (by_area @ panels.growth(len(nodes))).reshape(2, len(nodes)).T
-        return pull
-
-    def curvature(self, nodes: FloatArray) -> csr_matrix:
-        """Gauss-Newton approximation of the second derivative by the nodes' x, then their y: (2 N, 2 N)."""
+    def at(self, nodes: FloatArray) -> EvenPanelsAt:
+        """The term at compact ``nodes`` (N, 2), unit cells."""
+        away = nodes - self.uniform
+        force = self.elastic @ away
+        value = 0.5 * float((away * force).sum())
         if not self.areas:
-            return self.stiffness
-        panels = self._panels(nodes)
-        growth = panels.growth(len(nodes))
-        return csr_matrix(self.stiffness + 2.0 * self.areas / len(panels) * (growth.T @ growth))
+            return EvenPanelsAt(self, value, force, None)
+        panels = panel_areas(nodes, *self.grid, self.mean_area)
+        return EvenPanelsAt(self, value + self.areas * float(np.square(panels.area - self.asked).mean()), force, panels)
 
-    def _panels(self, nodes: FloatArray) -> PanelAreas:
-        return panel_areas(nodes, *self.grid, self.mean_area)
+
+@lru_cache(maxsize=16)
+def _of_rectangle(grid: tuple[int, int], edges: float, areas: float) -> EvenPanels:
+    """The term for the paper's rectangle, kept for the last few grids."""
+    return EvenPanels._of_shares(Sheet.uniform(*grid), None, edges, areas)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EvenPanelsAt:
+    """The term at one layout."""
+
+    term: EvenPanels
+    value: float  #: The shares' sum: mean squares, in uniform edges and areas
+    _force: FloatArray
+    _panels: PanelAreas | None
+
+    def pull(self) -> FloatArray:
+        """Derivative (N, 2) of the value by the nodes."""
+        if self._panels is None:
+            return self._force
+        by_area = 2.0 * self.term.areas / len(self._panels) * (self._panels.area - self.term.asked)
+        return self._force + self._panels.pulled(by_area, len(self._force))
+
+    def curvature(self) -> csr_matrix:
+        """Gauss-Newton approximation of the second derivative by the nodes' x, then their y: (2 N, 2 N)."""
+        panels = self._panels
+        weight = 0.0 if panels is None else 2.0 * self.term.areas / len(panels)
+        return self.term.pattern.filled(weight, None if panels is None else panels.slope)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PanelPattern:
+    """Places of entries in a matrix (2 N, 2 N) on the nodes' x and y that couples panels' nodes."""
+
+    base: FloatArray  #: (E,); entries that do not change
+    column: IntArray  #: (E,)
+    first: IntArray  #: (2 N + 1,); where each row begins
+    place: IntArray  #: (64 P,); the entry of each pair of coordinates of each panel: the corners' x, then their y
+
+    @classmethod
+    def of(cls, elastic: csr_matrix, panels: IntArray) -> PanelPattern:
+        """The pattern of ``panels`` (P, 4), with a matrix (N, N) for x and for y in it."""
+        count = elastic.shape[0]
+        still = elastic.tocoo()
+        corners = np.concatenate([panels, panels + count], axis=1)
+        pairs = (corners[:, :, None] * 2 * count + corners[:, None, :]).ravel()
+        along_x = still.row.astype(np.intp) * 2 * count + still.col
+        entries, place = np.unique(
+            np.concatenate([pairs, along_x, along_x + 2 * count * count + count]), return_inverse=True
+        )
+        base: FloatArray = np.bincount(place[pairs.size :], np.tile(still.data, 2), entries.size)
+        row, column = np.divmod(entries, 2 * count)
+        first = np.searchsorted(row, np.arange(2 * count + 1))
+        return cls(base, column.astype(np.int32), first.astype(np.int32), place[: pairs.size])
+
+    def filled(self, weight: float, slope: FloatArray | None) -> csr_matrix:
+        """The matrix, with ``weight`` times the products of slopes (P, 4, 2) of one panel."""
+        data = self.base
+        if slope is not None:
+            each = np.swapaxes(slope, 1, 2).reshape(len(slope), 8)
+            products = (weight * each)[:, :, None] * each[:, None, :]
+            data = data + np.bincount(self.place, products.ravel(), data.size)
+        return csr_matrix((data, self.column, self.first), shape=(len(self.first) - 1,) * 2)

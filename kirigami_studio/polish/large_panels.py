@@ -14,7 +14,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.sheet import Sheet
@@ -54,20 +53,24 @@ class PanelAreas:
         along[:, rows, self.corners] = np.moveaxis(self.slope, 2, 0)
         return along[0], along[1]
 
-    def growth(self, node_count: int) -> csr_matrix:
-        """The same matrices side by side, (P, 2 N), sparse."""
-        entries = np.concatenate([self.slope[..., 0], self.slope[..., 1]], axis=1)
-        places = np.concatenate([self.corners, self.corners + node_count], axis=1)
-        first = np.arange(0, entries.size + 1, entries.shape[1])
-        return csr_matrix((entries.ravel(), places.ravel(), first), shape=(len(self), 2 * node_count))
+    def pulled(self, weight: FloatArray, node_count: int) -> FloatArray:
+        """Derivative (N, 2) by the nodes of the areas' sum, each times its ``weight`` (P,)."""
+        pulled = np.empty((node_count, 2))
+        for axis in (0, 1):
+            each = weight[:, None] * self.slope[:, :, axis]
+            pulled[:, axis] = np.bincount(self.corners.ravel(), each.ravel(), node_count)
+        return pulled
 
 
 def panel_areas(nodes: FloatArray, rows: int, columns: int, mean: float = 1.0) -> PanelAreas:
     """Measure all panels of an m x n grid with compact ``nodes`` (N, 2), unit cells, against a ``mean`` area."""
     corners = topology(rows, columns).panel_nodes.reshape(-1, 4)
-    first, second = (nodes[corners[:, place + 2]] - nodes[corners[:, place]] for place in (0, 1))
+    spots = nodes[corners]
+    across = spots[:, 2:] - spots[:, :2]
+    first, second = across[:, 0], across[:, 1]
     area = 0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
-    by_first = 0.5 * np.stack([second[:, 1], -second[:, 0]], axis=1)
-    by_second = 0.5 * np.stack([-first[:, 1], first[:, 0]], axis=1)
-    slope = np.stack([-by_first, -by_second, by_first, by_second], axis=1)
-    return PanelAreas(corners, area / mean, slope / mean)
+    slope, half = np.empty((len(corners), 4, 2)), 0.5 / mean
+    slope[:, 2, 0], slope[:, 2, 1] = half * second[:, 1], -half * second[:, 0]
+    slope[:, 3, 0], slope[:, 3, 1] = -half * first[:, 1], half * first[:, 0]
+    np.negative(slope[:, 2:], out=slope[:, :2])
+    return PanelAreas(corners, area / mean, slope)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW
 from kirigami_studio.lattice.topology import topology
-from kirigami_studio.polish.boundary_target import NORMAL_LENGTH, BoundaryTarget, unit_normals
+from kirigami_studio.polish.boundary_target import NORMAL_LENGTH, BoundaryTarget, normals_of, unit_normals
 
 #: Where on each layout edge distances are taken.
 EDGE_SHARES = np.array([1 / 6, 1 / 2, 5 / 6])
@@ -48,8 +50,8 @@ class Matching:
         slope: FloatArray = self.pull(force, len(outline)) + self._stretching(outline, trust)
         return slope
 
-    def curvature(self, count: int, trust: float) -> FloatArray:
-        """Gauss-Newton approximation (2 count, 2 count) of the cost's second derivative by the vertices."""
+    def curvature(self, count: int, trust: float) -> csr_matrix:
+        """Gauss-Newton second derivative of the cost by the vertices: (2 count, 2 count), sparse."""
         return self.spread(2.0 * self.weight / np.sqrt(1.0 + np.square(self.distance / trust)), count)
 
     def _stretching(self, outline: FloatArray, trust: float) -> FloatArray:
@@ -64,28 +66,45 @@ class Matching:
 
     def pull(self, force: FloatArray, count: int) -> FloatArray:
         """Derivative (2 count,) by the outline's vertices, x and y in turn, from that by the distances (R,)."""
-        column, share = self._reader(count)
-        pull = np.bincount(column.ravel(), (force[:, None] * share).ravel(), 2 * count)
-        return np.asarray(pull, dtype=np.float64)
+        along = (force / np.maximum(self.distance, 1e-12))[:, None] * self.gap
+        later = along * self.share[:, None]
+        along -= later
+        edge = np.concatenate([self.edge, self.edge + 1])
+        pull = np.empty((count, 2))
+        for axis in (0, 1):
+            each = np.bincount(edge, np.concatenate([along[:, axis], later[:, axis]]), count + 1)
+            each[0] += each[count]
+            pull[:, axis] = each[:count]
+        return pull.ravel()
 
-    def spread(self, stiffness: FloatArray, count: int) -> FloatArray:
-        """Second derivative (2 count, 2 count) by the vertices from that by the distances (R,), each on its own."""
-        column, share = self._reader(count)
-        place = 2 * count * column[:, :, None] + column[:, None, :]
-        value = (stiffness[:, None] * share)[:, :, None] * share[:, None, :]
-        spread = np.bincount(place.ravel(), value.ravel(), 4 * count * count)
-        return np.asarray(spread, dtype=np.float64).reshape(2 * count, 2 * count)
+    def spread(self, stiffness: FloatArray, count: int) -> csr_matrix:
+        """Second derivative (2 count, 2 count), sparse, by the vertices from that by distances (R,).
 
-    def _reader(self, count: int) -> tuple[IntArray, FloatArray]:
-        """Which four coordinates move each distance, and how much: (R, 4) each.
-
-        The place on the target slides along the boundary, so only the part of a motion along the gap counts.
+        A vertex and its two neighbours move a distance.
         """
-        direction = self.gap / np.maximum(self.distance, 1e-12)[:, None]
-        following = (self.edge + 1) % count
-        column = np.stack([2 * self.edge, 2 * self.edge + 1, 2 * following, 2 * following + 1], axis=1)
-        share = np.concatenate([direction * (1.0 - self.share)[:, None], direction * self.share[:, None]], axis=1)
-        return column, share
+        stiff = stiffness / np.square(np.maximum(self.distance, 1e-12))
+        x, y, share, rest = self.gap[:, 0], self.gap[:, 1], self.share, 1.0 - self.share
+        # By edge, the squares xx, xy, yy at its start, then of start and end together, then at its end.
+        squares = np.stack([stiff * x * x, stiff * x * y, stiff * y * y])
+        parts = np.stack([rest * rest * squares, rest * share * squares, share * share * squares])
+        place = np.arange(9)[:, None] * count + self.edge
+        first, both, last = np.bincount(place.ravel(), parts.ravel(), 9 * count).reshape(3, 3, count)[:, [0, 1, 1, 2]]
+        blocks = np.empty((count, 2, 3, 2))
+        for number, block in enumerate((both[:, np.arange(-1, count - 1)], first + np.roll(last, 1, axis=1), both)):
+            blocks[:, :, number] = block.T.reshape(count, 2, 2)
+        column, start = _neighbouring(count)
+        return csr_matrix((blocks.ravel(), column, start), shape=(2 * count, 2 * count))
+
+
+@lru_cache(maxsize=64)
+def _neighbouring(count: int) -> tuple[IntArray, IntArray]:
+    """Columns of the coordinates of each vertex of a closed polygon and of its neighbours.
+
+    For both rows of a vertex, and where each row begins.
+    """
+    vertex = (np.arange(count)[:, None] + np.arange(-1, 2)) % count
+    columns = (2 * vertex[:, :, None] + np.arange(2)).reshape(count, 1, 6)
+    return np.repeat(columns, 2, axis=1).ravel().astype(np.int32), np.arange(0, 12 * count + 1, 6, dtype=np.int32)
 
 
 def _robust(distance: FloatArray, trust: float) -> FloatArray:
@@ -97,22 +116,26 @@ def _robust(distance: FloatArray, trust: float) -> FloatArray:
 def matched(outline: FloatArray, target: BoundaryTarget) -> Matching:
     """Match an outline (L, 2), counter-clockwise, with the target in whose frame it lies."""
     count = len(outline)
-    edges = np.roll(outline, -1, axis=0) - outline
-    normals = unit_normals(outline)
-    edge = np.repeat(np.arange(count), EDGE_SHARES.size)
-    share = np.tile(EDGE_SHARES, count)
-    points = outline[edge] + share[:, None] * edges[edge]
-    out = points - target.nearest(points, normals[edge])
-    back_edge, back_share, back = _nearest_on(outline, edges, normals, target)
-    gap = np.concatenate([out, back])
+    edges = outline[np.arange(1, count + 1) % count] - outline
     length = np.hypot(edges[:, 0], edges[:, 1])
+    normals = normals_of(edges, length)
+    edge, share = _places_on_edges(count)
+    points = outline[edge] + share[:, None] * edges[edge]
+    back_edge, back_share, back = _nearest_on(outline, edges, normals, target)
+    gap = np.concatenate([points - target.nearest(points, normals[edge]), back])
     return Matching(
         edge=np.concatenate([edge, back_edge]),
         share=np.concatenate([share, back_share]),
         gap=gap,
         distance=np.hypot(gap[:, 0], gap[:, 1]),
-        weight=np.concatenate([length[edge] / EDGE_SHARES.size, np.full(len(back), target.weight)]),
+        weight=np.concatenate([(length / EDGE_SHARES.size)[edge], np.full(len(back), target.weight)]),
     )
+
+
+@lru_cache(maxsize=64)
+def _places_on_edges(count: int) -> tuple[IntArray, FloatArray]:
+    """Edge and share of all places on an outline where distances are taken: (3 count,) each."""
+    return np.repeat(np.arange(count), EDGE_SHARES.size), np.tile(EDGE_SHARES, count)
 
 
 def _nearest_on(
@@ -121,14 +144,21 @@ def _nearest_on(
     """Closest place that looks the same way on the polyline, for each target sample: edge, share, vector to it."""
     samples = target.samples
     squared = np.maximum(np.square(edges).sum(axis=1), 1e-24)
-    offset_x = samples[:, :1] - start[:, 0]
-    offset_y = samples[:, 1:] - start[:, 1]
-    share = np.clip((offset_x * edges[:, 0] + offset_y * edges[:, 1]) / squared, 0.0, 1.0)
-    gap_x, gap_y = share * edges[:, 0] - offset_x, share * edges[:, 1] - offset_y
-    turned = 2.0 - 2.0 * (target.normals @ normals.T)
-    edge = (np.square(gap_x) + np.square(gap_y) + NORMAL_LENGTH**2 * turned).argmin(axis=1)
-    rows = np.arange(len(samples))
-    return edge, share[rows, edge], np.stack([gap_x[rows, edge], gap_y[rows, edge]], axis=1)
+    # Along each edge, then the squared distance less what is the same for all edges of a sample.
+    along = samples @ edges.T
+    along -= (start * edges).sum(axis=1)
+    share = along / squared
+    np.clip(share, 0.0, 1.0, out=share)
+    away = share * squared
+    along *= 2.0
+    away -= along
+    away *= share
+    away += np.square(start).sum(axis=1)
+    places = np.concatenate([start, NORMAL_LENGTH**2 * normals], axis=1)
+    away -= 2.0 * (np.concatenate([samples, target.normals], axis=1) @ places.T)
+    edge = away.argmin(axis=1)
+    share = share[np.arange(len(samples)), edge]
+    return edge, share, start[edge] + share[:, None] * edges[edge] - samples
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg.lapack import dgesv, dpotrf, dtrtrs
+from scipy.sparse import csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 
@@ -30,7 +31,7 @@ class Quadratic:
     inner: FloatArray  #: (V, V); second derivative of all that is not the match; symmetric
     outline: FloatArray  #: (2 L, V); derivative of the outline
     #: (2 L, 2 L); Gauss-Newton approximation of the second derivative of the match by the outline; symmetric.
-    spread: FloatArray
+    spread: FloatArray | csr_matrix
 
     @property
     def hessian(self) -> FloatArray:
@@ -73,7 +74,7 @@ class Damped:
         reach = dtrtrs(factor, outline.T, lower=1, overwrite_b=1)[0]
         return cls(held, factor, reach, reach.T @ reach)
 
-    def step(self, gradient: FloatArray, spread: FloatArray, stiffer: float = 1.0) -> FloatArray:
+    def step(self, gradient: FloatArray, spread: FloatArray | csr_matrix, stiffer: float = 1.0) -> FloatArray:
         """The step (V,) for a gradient (V,) and a ``spread`` (2 L, 2 L), with all but the match times ``stiffer``."""
         across = dtrtrs(self._factor, np.where(self.held, 0.0, gradient), lower=1)[0]
         system = spread @ self._compliance

@@ -16,11 +16,12 @@ angle, in a pose of its own, times its weight.
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import block_diag
+from scipy.sparse import block_diag, csr_matrix
 
 from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
 from kirigami_studio.evaluate.similarity import Similarity
@@ -29,7 +30,7 @@ from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
 from kirigami_studio.polish.chords import Chords
-from kirigami_studio.polish.even_panels import EvenPanels
+from kirigami_studio.polish.even_panels import EvenPanels, EvenPanelsAt
 from kirigami_studio.polish.junctions import OPEN, JunctionAngles, junctions
 from kirigami_studio.polish.large_panels import LARGE, PanelAreas, panel_areas
 from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched
@@ -162,8 +163,10 @@ class Objective:
             second = SecondLook(placed, matched(placed, self.second.target))
             cost += self.second.weight * second.matching.cost(self.phase.trust)
         cost += self.terms.value(shape[: self.model.voids])
+        even = None
         if self.even is not None:
-            cost += self.phase.even * self.even.value(nodes)
+            even = self.even.at(nodes)
+            cost += self.phase.even * even.value
         excess = 0.0
         if self.model.chords is not None:
             excess = self.model.chords.excess(self.model.positions(shape))
@@ -188,7 +191,7 @@ class Objective:
         if self.even is not None and self._each_large:
             large = panel_areas(nodes, self.model.rows, self.model.columns, self.even.mean_area).larger(LARGE)
             cost += self._each_large * float(np.square(large.area - LARGE).sum())
-        return Look(state, decoded, outline, matching, second, small, close, shallow, large, excess, gaps, cost)
+        return Look(state, decoded, outline, matching, second, even, small, close, shallow, large, excess, gaps, cost)
 
     def _parts(self, state: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Shape, pose, and the second target's pose, empty where there is none."""
@@ -203,17 +206,18 @@ class Objective:
         basis = basis or Basis.of(look.state.size - self.poses, None)
         _, pose, second_pose = self._parts(look.state)
         motion = self.model.node_motion(look.decoded)
-        if self.even is not None and stiffness is None:
-            stiffness = motion.curvature(self.even.curvature(look.decoded.nodes), basis)
+        if look.even is not None and stiffness is None:
+            stiffness = motion.curvature(look.even.curvature(), basis)
         centroids = None
         if self.transport is not None:
             posed = _posed(self.transport.centroids(look.decoded.nodes), pose)
-            moved = self.transport.slopes(motion.derivative(basis))
-            centroids = _state_derivative(posed, moved, pose, 0, self.poses)
-        outline = _state_derivative(look.outline, basis.reduced(motion.outline()), pose, 0, self.poses)
+            moved = _turned(self.transport.slopes(motion.derivative(basis)), _factor(pose), self.poses)
+            centroids = _with_pose(moved, posed, pose, 0, self.poses)
+        outline = motion.outline(basis, _factor(pose), self.poses)
+        outline = _with_pose(outline, look.outline, pose, 0, self.poses)
         if self.second is not None and look.second is not None:
-            moved = basis.reduced(motion.outline_in(self.second.model))
-            other = _state_derivative(look.second.outline, moved, second_pose, POSE, self.poses)
+            other = motion.outline_in(self.second.model, basis, _factor(second_pose), self.poses)
+            other = _with_pose(other, look.second.outline, second_pose, POSE, self.poses)
             outline = np.concatenate([outline, other])
         return Slopes(basis, outline, motion, stiffness, centroids)
 
@@ -259,7 +263,7 @@ class Objective:
         """Derivative (S,) by the shape of what chords cut off."""
         return np.append(np.zeros(self.model.voids), chords.slopes(self.model.positions(shape)))
 
-    def spread(self, look: Look) -> FloatArray:
+    def spread(self, look: Look) -> csr_matrix:
         """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L); those
         at the second target's angle follow the first.
         """
@@ -268,12 +272,11 @@ class Objective:
         if self.second is None or look.second is None:
             return spread
         second = self.second.weight * look.second.matching.curvature(len(look.second.outline), trust)
-        return np.asarray(block_diag(spread, second))
+        return csr_matrix(block_diag((spread, second)))
 
     def _force(self, look: Look) -> FloatArray | None:
         """Derivative (N, 2) of the terms on panels by the compact nodes; None where there are none."""
-        nodes = look.decoded.nodes
-        force = self.phase.even * self.even.pull(nodes) if self.even is not None else None
+        force = None if look.even is None else self.phase.even * look.even.pull()
         priced = self._priced(look)
         if priced is not None:
             grown = np.stack([2.0 * (priced[0] @ along) for along in priced[1]], axis=1)
@@ -333,6 +336,7 @@ class Look:
     outline: FloatArray  #: (L, 2); the layout's outline in the target's frame
     matching: Matching
     second: SecondLook | None
+    even: EvenPanelsAt | None  #: Where the phase asks for even panels
     small: PanelSizes  #: Edges and necks below the least size
     close: PinRoom  #: Where pins have less room than they need
     shallow: JunctionAngles  #: Where cuts meet at shallow angles, if the phase asks for open junctions
@@ -353,19 +357,31 @@ def _similarity(pose: FloatArray) -> Similarity:
     return Similarity(math.exp(pose[0]), pose[1], (pose[2], pose[3]))
 
 
-def _state_derivative(
-    outline: FloatArray, derivative: FloatArray, pose: FloatArray, first: int, poses: int
-) -> FloatArray:
-    """Derivative (2 L, V + P) of posed points (L, 2) by V variables and P numbers of poses, from that in the layout's
-    own frame (L, 2, V); the points' own pose begins at number ``first``.
+def _factor(pose: FloatArray) -> complex:
+    """Scale and turn of a pose."""
+    return cmath.rect(math.exp(pose[0]), pose[1])
+
+
+def _turned(derivative: FloatArray, factor: complex, more: int) -> FloatArray:
+    """A derivative (L, 2, V) turned and scaled by a factor, with ``more`` columns left open."""
+    count, _, size = derivative.shape
+    turned = np.empty((count, 2, size + more))
+    turned[:, 0, :size] = factor.real * derivative[:, 0] - factor.imag * derivative[:, 1]
+    turned[:, 1, :size] = factor.imag * derivative[:, 0] + factor.real * derivative[:, 1]
+    return turned
+
+
+def _with_pose(derivative: FloatArray, points: FloatArray, pose: FloatArray, first: int, poses: int) -> FloatArray:
+    """A derivative (2 L, V + P) of posed ``points`` (L, 2) by variables and poses.
+
+    It is made of (L, 2, V + P) with open columns for the P numbers of ``poses``; the points' own pose begins at
+    number ``first`` of these.
     """
-    c, s = math.exp(pose[0]) * math.cos(pose[1]), math.exp(pose[0]) * math.sin(pose[1])
-    size = derivative.shape[2]
-    full = np.zeros((*outline.shape, size + poses))
-    full[:, 0, :size] = c * derivative[:, 0] - s * derivative[:, 1]
-    full[:, 1, :size] = s * derivative[:, 0] + c * derivative[:, 1]
-    own, about = full[:, :, size + first : size + first + POSE], outline - pose[2:]
+    count, _, size = derivative.shape
+    derivative[:, :, size - poses :] = 0.0
+    first += size - poses
+    own, about = derivative[:, :, first : first + POSE], points - pose[2:]
     own[:, :, 0] = about
     own[:, 0, 1], own[:, 1, 1] = -about[:, 1], about[:, 0]
     own[:, 0, 2] = own[:, 1, 3] = 1.0
-    return full.reshape(-1, size + poses)
+    return derivative.reshape(2 * count, size)

@@ -11,13 +11,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.compact import barycentric_stencil
-from kirigami_studio.lattice.deployment import ZIPPED_BELOW, even_part_of_outline, rotate
+from kirigami_studio.lattice.deployment import ZIPPED_BELOW, even_part_of_outline
 from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, rim_table
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.basis import Basis
@@ -50,13 +51,18 @@ class _Plan:
     #: both legs, and where their product stands in the flat coupling (2, m, n + 1, n + 1) of ``factor``.
     around: tuple[IntArray, IntArray, IntArray]
     band: Band  #: the same system with its entries, those of ``around``, near the diagonal
-    given: BoolArray  #: (K, 2); stencil ends that are given nodes
-    #: (entry, row, column) int arrays; stencil weights that couple free rows to given columns, in the order of
-    #: ``rim_table(...).node``.
+    resting: IntArray  #: (Q,); free rows that rest on given nodes, ascending
+    #: (entry, row, node) int arrays; stencil weights that couple rows of ``resting`` to given nodes, all numbers.
     to_given: tuple[IntArray, IntArray, IntArray]
-    #: even, whole: (L, N); rows that read U, and U + V, off the compact nodes.
-    even: FloatArray
-    whole: FloatArray
+    #: (entry, row, mouth, share) arrays; the same with each of the mouths that the given node follows, and how far.
+    to_mouth: tuple[IntArray, IntArray, IntArray, FloatArray]
+    known: tuple[IntArray, IntArray]  #: rows of ``resting`` and mouths that these couple
+    loop: IntArray  #: (L,); the outline's nodes
+    even: csr_matrix  #: (L, N), sparse; rows that read U off the compact nodes
+    #: along_free, along_given: (K, 2 L) and (G, 2 L); columns that read U + V of the outline, then U - V, off free and
+    #: off given nodes.
+    along_free: FloatArray
+    along_given: FloatArray
 
     def paths(self, weights: FloatArray) -> FloatArray:
         """How much each h node rests on others, by the paths of ``around``, from stencil weights (2 K + 1,)."""
@@ -100,7 +106,8 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     node, ends, void = node[order], ends[order], void[order]
     position = np.full(tables.node_count, -1)
     position[node] = np.arange(node.size)
-    rim = rim_table(rows, columns).node
+    table = rim_table(rows, columns)
+    rim = table.node
     rim_position = np.full(tables.node_count, -1)
     rim_position[rim] = np.arange(rim.size)
     keep = np.isin(tables.outline_nodes, tables.outline_at_zero) if zipped else np.ones(tables.outline_nodes.size, bool)
@@ -109,6 +116,7 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     whole[np.arange(loop.size), loop] = 1.0
     whole[:, 0] -= 1.0
     even = even_part_of_outline(rows, columns)[keep]
+    reads = np.concatenate([whole, 2.0 * even - whole]).T
     h = int(np.count_nonzero(node < tables.h.size))
     entry = np.arange(2 * node.size)
     row, column = entry // 2, position[ends].ravel()
@@ -117,6 +125,12 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     v_to_h = entry[from_v], row[from_v] - h, column[from_v]
     first, second = np.nonzero(h_to_v[2][:, None] == v_to_h[1])
     known = column < 0
+    resting = np.unique(row[known])
+    entry_known, row_known = entry[known], np.searchsorted(resting, row[known])
+    node_known = ends.ravel()[known]
+    of_mouth = table.share[:, table.mouths][rim_position[node_known]]
+    coupled, mouth = np.nonzero(of_mouth)
+    pairs = np.unique(row_known[coupled] * table.mouths.size + mouth)
     slot = node[:h] - (columns + 1)
     (up, left), (down, right) = (np.divmod(slot[place], columns + 1) for place in (h_to_v[1][first], v_to_h[2][second]))
     around = (((down > up) * rows + up) * (columns + 1) + left) * (columns + 1) + right
@@ -133,10 +147,14 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
         slot=slot,
         around=(h_to_v[0][first], v_to_h[0][second], around),
         band=Band.of(h_to_v[1][first], v_to_h[2][second], h),
-        given=known.reshape(-1, 2),
-        to_given=(entry[known], row[known], rim_position[ends].ravel()[known]),
-        even=even,
-        whole=whole,
+        resting=resting,
+        to_given=(entry_known, row_known, node_known),
+        to_mouth=(entry_known[coupled], row_known[coupled], mouth, of_mouth[coupled, mouth]),
+        known=(pairs // table.mouths.size, pairs % table.mouths.size),
+        loop=loop,
+        even=csr_matrix(even),
+        along_free=np.ascontiguousarray(reads[node]),
+        along_given=np.ascontiguousarray(reads[rim]),
     )
 
 
@@ -177,6 +195,9 @@ class OutlineModel:
         self._path, self._table = RimPath(rows, columns, start, cell), rim_table(rows, columns)
         self._rim = rim or Rim.even(rows, columns)
         self._plan = _plan(rows, columns, phi < ZIPPED_BELOW)
+        #: How the given nodes follow the mouths, (G, R); no mouths where the rim is not free.
+        self._share = self._table.share[:, self._table.mouths if free_rim else []]
+        self._patterns: dict[Basis, tuple[IntArray, FloatArray, IntArray, IntArray]] = {}
         self._half = 0.5 * (math.pi - phi)
         self.voids = rows * columns
         self.size = self.voids + (self._table.even.size if free_rim else 0)
@@ -216,25 +237,32 @@ class OutlineModel:
 
     def outline_of(self, nodes: FloatArray) -> FloatArray:
         """Boundary polygon (L, 2) of the sheet with compact ``nodes`` (N, 2), unit cells."""
-        return self._deployed(self._plan.even @ nodes, self._plan.whole @ nodes)
+        whole = nodes[self._plan.loop] - nodes[0]
+        apart = 2.0 * (self._plan.even @ nodes) - whole
+        # R(-a) U + R(a) V with the sum and the difference of U and V.
+        c, s = math.cos(self._half), math.sin(self._half)
+        outline: FloatArray = c * whole
+        outline[:, 0] += s * apart[:, 1]
+        outline[:, 1] -= s * apart[:, 0]
+        return outline
 
     def linearised(self, shape: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Outline (L, 2) and its derivative (L, 2, S) by the shape."""
         decoded = self.decoded(shape)
-        return self.outline_of(decoded.nodes), self.node_motion(decoded).outline()
+        return self.outline_of(decoded.nodes), self.node_motion(decoded).outline(Basis.of(self.size, None))
 
     def node_motion(self, decoded: CompactLayout) -> NodeMotion:
         """How all compact nodes move with the shape."""
         plan, width = self._plan, self.columns + 1
         coupling = np.bincount(plan.around[2], plan.paths(decoded.weights), 2 * self.rows * width * width)
         factor = factored(np.asarray(coupling, dtype=np.float64).reshape(2, self.rows, width, width), plan.slot)
-        along, share = self._along(decoded.shape), np.zeros((self._table.node.size, 0))
-        if self.free_rim:
-            share = self._table.share[:, self._table.mouths]
-        known = self._known(decoded.weights) @ share
-        return NodeMotion(
-            self, _FactoredField(decoded.weights, factor), self._pull(decoded.shape, decoded.nodes), along, share, known
-        )
+        along, mouths = self._along(decoded.shape), self._share.shape[1]
+        known = np.zeros((plan.resting.size, mouths))
+        if mouths:
+            entry, row, mouth, share = plan.to_mouth
+            known += np.bincount(row * mouths + mouth, decoded.weights[entry] * share, known.size).reshape(known.shape)
+        system = _FactoredField(decoded.weights, factor)
+        return NodeMotion(self, system, self._pull(decoded), along, self._share, known)
 
     def _along(self, shape: FloatArray) -> FloatArray:
         """Derivative of the mouths' points by their offsets, (R, 2); none where the rim is not free."""
@@ -245,45 +273,47 @@ class OutlineModel:
         nodes[self._table.node] = self._table.share @ self._path.anchors(positions)
         return nodes
 
-    def _pull(self, shape: FloatArray, nodes: FloatArray) -> FloatArray:
+    def _pull(self, decoded: CompactLayout) -> FloatArray:
         """How each free node's own equation moves it per unit of its void's z: (K, 2)."""
-        ends = self._plan.ends
-        x = np.power(10.0, shape[: self.voids])[self._plan.void]
-        pull: FloatArray = (x * LN10 / (1.0 + x) ** 2)[:, None] * (nodes[ends[:, 0]] - nodes[ends[:, 1]])
+        ends, nodes = self._plan.ends, decoded.nodes
+        # With x = 10^z the weights of both ends are x / (1 + x) and 1 / (1 + x).
+        weights = decoded.weights[:-1].reshape(-1, 2)
+        pull: FloatArray = (LN10 * weights[:, :1] * weights[:, 1:]) * (nodes[ends[:, 0]] - nodes[ends[:, 1]])
         return pull
-
-    def _per_void(self, moved: FloatArray) -> FloatArray:
-        """Add up the two free nodes (F, K) of each void: (F, m * n)."""
-        both: FloatArray = moved[:, self._plan.pair[0]] + moved[:, self._plan.pair[1]]
-        return both
-
-    def _deployed(self, even: FloatArray, whole: FloatArray) -> FloatArray:
-        return rotate(even, -self._half) + rotate(whole - even, self._half)
 
     def decoded(self, shape: FloatArray) -> CompactLayout:
         """The compact sheet of a shape (S,)."""
         plan, h = self._plan, self._plan.h_count
         given = self._given_nodes(self.positions(shape)) if self.free_rim else self._given
         x = np.power(10.0, shape[: self.voids])[plan.void]
-        weights = np.stack([x / (1.0 + x), 1.0 / (1.0 + x)], axis=1)
-        known = ((weights * plan.given)[..., None] * given[plan.ends]).sum(axis=1)
-        flat = np.append(weights.ravel(), 0.0)
+        flat = np.zeros(2 * x.size + 1)
+        np.divide(1.0, 1.0 + x, out=flat[1:-1:2])
+        np.multiply(x, flat[1:-1:2], out=flat[:-1:2])
+        entry, row, node = plan.to_given
+        known, each = np.zeros((x.size, 2)), flat[entry, None] * given[node]
+        for axis in (0, 1):
+            known[plan.resting, axis] = np.bincount(row, each[:, axis], plan.resting.size)
         at_h = plan.band.solution(plan.paths(flat), known[:h] + plan.h_on_v.times(flat, known[h:]))
         nodes = given.copy()
         nodes[plan.free[:h]] = at_h
         nodes[plan.free[h:]] = plan.v_on_h.times(flat, at_h) + known[h:]
         return CompactLayout(shape, nodes, flat)
 
-    def _known(self, weights: FloatArray) -> FloatArray:
-        """What free nodes get from given ones: (K, G)."""
-        entry, row, column = self._plan.to_given
-        shape = self._plan.free.size, self._table.node.size
-        known = np.bincount(row * shape[1] + column, weights[entry], shape[0] * shape[1])
-        return np.asarray(known, dtype=np.float64).reshape(shape)
+    def _right_pattern(self, basis: Basis) -> tuple[IntArray, FloatArray, IntArray, IntArray]:
+        """Places of the entries in the right-hand sides of a basis.
 
-    def _adjoint(self, reach: FloatArray, system: _FactoredField) -> FloatArray:
-        """``reach`` (F, N) times A^-1 over the free nodes: (F, K)."""
-        return self._backward(np.ascontiguousarray(reach[:, self._plan.free].T), system).T
+        In a list of voids' pairs and mouths' couplings; with their signs, their rows, and where each column begins.
+        """
+        if basis not in self._patterns:
+            coupled, mouth = self._plan.known if self.free_rim else (np.zeros(0, np.intp),) * 2
+            row = np.concatenate([*self._plan.pair, self._plan.resting[coupled]])
+            number = np.concatenate([np.arange(self.voids), np.arange(self.voids), self.voids + mouth])
+            place = np.argsort(basis.variable[number], kind="stable")
+            place = place[: int(np.count_nonzero(basis.variable[number] < basis.size))]
+            first = np.searchsorted(basis.variable[number[place]], np.arange(basis.size + 1))
+            sign: FloatArray = basis.sign[number[place]]
+            self._patterns[basis] = place, sign, row[place], first
+        return self._patterns[basis]
 
     def _forward(self, right: FloatArray, system: _FactoredField) -> FloatArray:
         """A^-1 times ``right`` (K, D), both over the free nodes."""
@@ -314,15 +344,15 @@ class NodeMotion:
     Attributes
     ----------
     model : OutlineModel
-    system : _System
+    system : _FactoredField
     pull : (K, 2) float
         How each free node's own equation moves it per unit of its void's z.
     along : (R, 2) float
         How the mouths move; none where the rim is not free.
     share : (G, R) float
         How the given nodes follow the mouths, along each side.
-    known : (K, R) float
-        What the free nodes' own equations get from them.
+    known : (Q, R) float
+        What the own equations of the free nodes that rest on given ones get from them.
     """
 
     model: OutlineModel
@@ -332,35 +362,36 @@ class NodeMotion:
     share: FloatArray
     known: FloatArray
 
-    def outline(self) -> FloatArray:
-        """Derivative (L, 2, S) of the deployed outline by the shape."""
-        plan = self.model._plan
-        return self.deployed(plan.even, plan.whole)
+    def outline(self, basis: Basis, pose: complex = 1.0 + 0.0j, more: int = 0) -> FloatArray:
+        """Derivative (L, 2, V + ``more``) of the deployed outline by the variables.
 
-    def outline_in(self, model: OutlineModel) -> FloatArray:
-        """The same at the angle of another model of the same sheets."""
-        return replace(self, model=model).outline()
-
-    def deployed(self, even: FloatArray, whole: FloatArray) -> FloatArray:
-        """Derivative (F, 2, S) by the shape of F places whose U and U + V are these matrices (F, N) times the nodes."""
-        model = self.model
-        reach = np.concatenate([even, whole])
-        through = model._adjoint(reach, self.system)
-        derivative = np.empty((len(even), 2, model.size))
-        self._fill(derivative[..., : model.voids], through, self.pull, per_void=True)
+        It is turned and scaled by the factor ``pose``; the last columns are left open.
+        """
+        plan, half = self.model._plan, self.model._half
+        count = plan.loop.size
+        through = self.model._backward(plan.along_free, self.system)
+        follow = np.zeros((0, 2 * count))
         if len(self.along):
-            followed = reach[:, model._table.node] @ self.share + through @ self.known
-            self._fill(derivative[..., model.voids :], followed, self.along, per_void=False)
+            follow = self.share.T @ plan.along_given + self.known.T @ through[plan.resting]
+        whole, apart = math.cos(half) * pose, math.sin(half) * pose
+        derivative = np.empty((count, 2, basis.size + more))
+        for axis, turn in ((0, 1.0 + 0.0j), (1, -1.0j)):
+            # Motion g of a node: pose (cos a (U + V) g - i sin a (U - V) g), of which x and y are the real parts after
+            # no turn and after one by -i.
+            by_whole, by_apart = turn * whole, -1.0j * turn * apart
+            parts = []
+            for moved, motion in ((through, self.pull), (follow, self.along)):
+                own = motion[:, 0] + 1j * motion[:, 1]
+                part = moved[:, :count] * (by_whole * own).real[:, None]
+                part += moved[:, count:] * (by_apart * own).real[:, None]
+                parts.append(part)
+            by_shape = np.concatenate([parts[0][plan.pair[0]] + parts[0][plan.pair[1]], parts[1]])
+            derivative[:, axis, : basis.size] = basis.reduced_rows(by_shape).T
         return derivative
 
-    def _fill(self, derivative: FloatArray, through: FloatArray, motion: FloatArray, *, per_void: bool) -> None:
-        """Derivative of deployed places from those of U and U + V (2 F, K) and the motion (K, 2) in the flat sheet."""
-        even, whole = np.split(through, 2)
-        odd, half = whole - even, self.model._half
-        by_even, by_odd = rotate(motion, -half), rotate(motion, half)
-        for axis in (0, 1):
-            moved = even * by_even[:, axis] + odd * by_odd[:, axis]
-            derivative[:, axis] = self.model._per_void(moved) if per_void else moved
+    def outline_in(self, model: OutlineModel, basis: Basis, pose: complex = 1.0 + 0.0j, more: int = 0) -> FloatArray:
+        """The same at the angle of another model of the same sheets."""
+        return replace(self, model=model).outline(basis, pose, more)
 
     def derivative(self, basis: Basis) -> FloatArray:
         """Derivative (2, N, V) of all nodes, x then y, by the variables."""
@@ -380,24 +411,25 @@ class NodeMotion:
         first, second = model._plan.pair
         each = (back * self.pull).sum(axis=1)
         slopes[: model.voids] = each[first] + each[second]
-        followed = self.share.T @ force[model._table.node] + self.known.T @ back
+        followed = self.share.T @ force[model._table.node] + self.known.T @ back[model._plan.resting]
         slopes[model.voids :] = (followed * self.along).sum(axis=1)
         return slopes
 
     def slopes(self, along_x: FloatArray, along_y: FloatArray, basis: Basis) -> FloatArray:
         """Derivative (F, V) of ``along_x @ x + along_y @ y`` of the nodes, both matrices (F, N), by the variables."""
-        model = self.model
+        model, plan = self.model, self.model._plan
         if basis.size < len(along_x):
             moved_x, moved_y = self.derivative(basis)
             return np.asarray(csr_matrix(along_x) @ moved_x + csr_matrix(along_y) @ moved_y)
-        slopes = np.zeros((len(along_x), model.size))
-        for axis, reach in enumerate((along_x, along_y)):
-            through = model._adjoint(reach, self.system)
-            slopes[:, : model.voids] += model._per_void(through * self.pull[:, axis])
+        slopes = np.zeros((model.size, len(along_x)))
+        for axis, reach in enumerate((along_x.T, along_y.T)):
+            through = model._backward(reach[plan.free], self.system)
             if len(self.along):
-                followed = reach[:, model._table.node] @ self.share + through @ self.known
-                slopes[:, model.voids :] += followed * self.along[:, axis]
-        return basis.reduced(slopes)
+                followed = self.share.T @ reach[model._table.node] + self.known.T @ through[plan.resting]
+                slopes[model.voids :] += followed * self.along[:, axis, None]
+            through *= self.pull[:, axis, None]
+            slopes[: model.voids] += through[plan.pair[0]] + through[plan.pair[1]]
+        return basis.reduced_rows(slopes).T
 
     def curvature(self, stiffness: csr_matrix, basis: Basis) -> FloatArray:
         """Second derivative (V, V) by the variables of p^T ``stiffness`` p / 2, where p (2 N,) is all nodes' x, then y.
@@ -408,19 +440,21 @@ class NodeMotion:
         first, second = model._plan.pair
         right = [self._right(axis, basis) for axis in (0, 1)]
         mouths = [self.share * self.along[:, axis] for axis in (0, 1)]
-        known = [csr_matrix((self.known * self.along[:, axis]).T) for axis in (0, 1)]
         follow = [basis.reduced(self._wide(each)) for each in mouths]
         by_shape = np.zeros((model.size, basis.size))
-        for start in range(0, basis.size, BLOCK):
-            block = slice(start, start + BLOCK)
-            moved = np.empty((2, model.node_count, follow[0][:, block].shape[1]))
+        blocks = max(1, round(basis.size / BLOCK))
+        for start, end in pairwise(basis.size * number // blocks for number in range(blocks + 1)):
+            block = slice(start, end)
+            moved = np.empty((2, model.node_count, end - start))
             for axis in (0, 1):
                 moved[axis, free] = model._forward(right[axis][:, block].toarray(), self.system)
                 moved[axis, given] = follow[axis][:, block]
             force = (stiffness @ moved.reshape(2 * model.node_count, -1)).reshape(moved.shape)
             for axis in (0, 1):
                 back = model._backward(force[axis, free], self.system)
-                by_shape[model.voids :, block] += mouths[axis].T @ force[axis, given] + known[axis] @ back
+                by_mouths = mouths[axis].T @ force[axis, given]
+                by_mouths += (self.known * self.along[:, axis]).T @ back[model._plan.resting]
+                by_shape[model.voids :, block] += by_mouths
                 back *= self.pull[:, axis, None]
                 by_shape[: model.voids, block] += back[first] + back[second]
         return basis.reduced_rows(by_shape)
@@ -428,16 +462,12 @@ class NodeMotion:
     def _right(self, axis: int, basis: Basis) -> csc_matrix:
         """Right-hand sides (K, V): what each variable does to the free nodes' own equations."""
         model = self.model
-        rim, mouth = np.nonzero(self.known)
-        row = np.concatenate([*model._plan.pair, rim])
-        number = np.concatenate([np.arange(model.voids), np.arange(model.voids), model.voids + mouth])
-        value = np.concatenate(
-            [self.pull[row[: 2 * model.voids], axis], self.known[rim, mouth] * self.along[mouth, axis]]
-        )
-        moves = basis.variable[number] < basis.size
-        row, number, value = row[moves], number[moves], value[moves]
-        entries = value * basis.sign[number], (row, basis.variable[number])
-        return csc_matrix(entries, shape=(len(self.pull), basis.size))
+        place, sign, row, first = model._right_pattern(basis)
+        values = [*self.pull[model._plan.pair, axis]]
+        if len(self.along):
+            coupled, mouth = model._plan.known
+            values.append(self.known[coupled, mouth] * self.along[mouth, axis])
+        return csc_matrix((np.concatenate(values)[place] * sign, row, first), shape=(len(self.pull), basis.size))
 
     def _wide(self, by_mouths: FloatArray) -> FloatArray:
         """Derivatives (., R) by the mouths with columns for the voids before them: (., S)."""

@@ -14,6 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 import shapely
+from scipy.sparse import csr_matrix
 from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist
 
@@ -92,16 +93,13 @@ def _target_points(target: Outline) -> FloatArray:
 
 
 @lru_cache(maxsize=8)
-def centroid_matrices(rows: int, columns: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Matrices (P, N) that read panel centroids off the compact nodes: in the flat sheet, in U and in V."""
+def centroid_matrices(rows: int, columns: int) -> tuple[csr_matrix, csr_matrix]:
+    """Sparse matrices (P, N) from compact nodes to panel centroids: of the flat sheet, and of U."""
     tables = topology(rows, columns)
     panels = tables.panel_nodes.reshape(-1, 4)
     flat = np.zeros((len(panels), tables.node_count))
     flat[np.arange(len(panels))[:, None], panels] = 0.25
-    even = flat @ even_panel_part(np.eye(tables.node_count), tables)
-    whole = flat.copy()
-    whole[:, 0] -= 1.0
-    return flat, even, whole - even
+    return csr_matrix(flat), csr_matrix(flat @ even_panel_part(np.eye(tables.node_count), tables))
 
 
 class TransportTerm:
@@ -115,7 +113,7 @@ class TransportTerm:
     """
 
     def __init__(self, sheet: Sheet, phi: float, transport: TransportMap) -> None:
-        self._flat, self._even, self._odd = centroid_matrices(*sheet.grid)
+        self._flat, self._even = centroid_matrices(*sheet.grid)
         self._half = 0.5 * (math.pi - phi)
         self._transport = transport
 
@@ -125,12 +123,16 @@ class TransportTerm:
 
     def centroids(self, nodes: FloatArray) -> FloatArray:
         """Panel centroids (P, 2) of the deployed layout with compact ``nodes`` (N, 2), unit cells."""
-        return rotate(self._even @ nodes, -self._half) + rotate(self._odd @ nodes, self._half)
+        return self._deployed(*nodes.T).T
 
     def slopes(self, slopes: FloatArray) -> FloatArray:
         """Derivative (P, 2, S) of the centroids by variables that move the nodes by ``slopes`` (2, N, S)."""
-        (even_x, even_y), (odd_x, odd_y) = self._even @ slopes, self._odd @ slopes
+        return np.moveaxis(self._deployed(*slopes), 0, 1)
+
+    def _deployed(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Deployed centroids (2, P, ...), or their motions, from those (N, ...) of compact nodes."""
         c, s = math.cos(self._half), math.sin(self._half)
-        return np.stack(
-            [c * (even_x + odd_x) + s * (even_y - odd_y), c * (even_y + odd_y) - s * (even_x - odd_x)], axis=1
-        )
+        whole_x, whole_y = self._flat @ x - x[0], self._flat @ y - y[0]
+        # U + V is the whole: R(-a) U + R(a) V = cos a (U + V) + sin a J (V - U), J a quarter turn.
+        apart_x, apart_y = 2.0 * (self._even @ x) - whole_x, 2.0 * (self._even @ y) - whole_y
+        return np.stack([c * whole_x + s * apart_y, c * whole_y - s * apart_x])

@@ -18,6 +18,9 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.edits import Edit, as_drawn, without_designs
 from kirigami_studio.project.sheet_size import size_of, sized
 
+#: Parts are alike where less than this share of their area, and of their size, differs.
+ALIKE = 1e-6
+
 #: A target and its place in the drawing of all, see :attr:`Document.place`.
 PlacedTarget = tuple[Outline, tuple[float, float] | None]
 
@@ -135,6 +138,22 @@ def parts_as_cut(document: Document) -> tuple[Document, ...]:
         part if number == document.part else _to_scale(part, document, scale)
         for number, part in enumerate(document.parts)
     )
+
+
+def twins(parts: Sequence[Document]) -> tuple[int, ...]:
+    """Numbers of the first part of each one's shape and size: one design serves all of them."""
+    return tuple(
+        next(other for other in range(number + 1) if _alike(parts[other].target, part.target))
+        for number, part in enumerate(parts)
+    )
+
+
+def _alike(one: Outline | None, other: Outline | None) -> bool:
+    if one is None or other is None or one is other:
+        return one is other
+    if abs(_drawn(one) - _drawn(other)) > ALIKE * _drawn(one) or len(one.holes) != len(other.holes):
+        return False
+    return float(one.polygon.symmetric_difference(other.polygon).area) < ALIKE
 
 
 def scale_of(document: Document) -> float:

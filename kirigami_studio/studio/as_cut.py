@@ -17,7 +17,9 @@ import shapely
 
 from kirigami_studio.assembly.backed import BackedSheet
 from kirigami_studio.evaluate.candidate import Candidate
-from kirigami_studio.evaluate.siou import iou_of_area
+from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.evaluate.similarity import Similarity
+from kirigami_studio.evaluate.siou import iou_of_area, pose_of_area
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.fabricate.centres import bending_lengths, void_hinges
 from kirigami_studio.fabricate.connectors import hinge_widths
@@ -76,6 +78,8 @@ LONGER_MM = 1e-3
 LEAST_STEPS = 3
 #: A sheet is closed so many times at most, each time with the contacts that the last time showed.
 MOST_CLOSINGS = 4
+#: Of a motion that nobody draws.
+NO_PANELS = CutPanels(PanelLines.of([]), PanelLines.of([]))
 #: The estimate's jam angles below this (radians) are those of contacts that close further: the sheet closes.
 ESTIMATE_CLOSES = math.radians(6.0)
 
@@ -122,6 +126,7 @@ class AsCut:
     strain_limit: float = math.inf
     thinness: float = 0.0
     yields_at: float = 0.0
+    flat_iou: float | None = None  #: Exact IoU of flat pieces with their start; None where there are no pieces
 
     def __post_init__(self) -> None:
         check_phi(self.jam_phi)
@@ -135,6 +140,11 @@ class AsCut:
     def closes(self) -> bool:
         """Whether the sheet comes to the angle that it is meant for."""
         return self.outcome is Outcome.CLOSES
+
+    @property
+    def of_pieces(self) -> bool:
+        """Whether its match is that of pieces put together."""
+        return self.iou is not None and self.flat_iou is not None
 
     @property
     def nearly_closes(self) -> bool:
@@ -192,6 +202,8 @@ class SimulatedSheet:
     width_mm: float  #: Width of the flat sheet
     panels: CutPanels  #: As the cuts leave them, in the frame of the closing's network
     made: Deployment | None = None  #: The sheet that is cut where that is not quite the design
+    #: Lays it where it comes to upon the target, from the network's frame (mm): the pose of its match as cut
+    laid: Similarity | None = None
 
     def stretch_at(self, phi: float) -> FloatArray:
         """Stretch (H,) of the connectors at an angle (radians), in their widths; the last that was found beyond it."""
@@ -208,7 +220,7 @@ class SimulatedSheet:
     def motion(self) -> CutMotion:
         """What pictures and animations show of it."""
         found = self.as_cut
-        return CutMotion(self.closing, self.width_mm, found.jam_phi, found.reached, self.panels, self.made)
+        return CutMotion(self.closing, self.width_mm, found.jam_phi, found.reached, self.panels, self.laid, self.made)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -220,6 +232,7 @@ class Overlap:
     forced: float
     iou_forced: float
     iou_ideal: float
+    laid: Similarity  #: pose (mm to the target's frame) of the first
 
 
 # the sheet as a network -----------------------------------------------------------------------------------------------
@@ -437,13 +450,13 @@ def grips_on_tiles(
     return held, pulled
 
 
-def motion_on_pins(phi: float, iou: float | None = None) -> AsCut:
+def motion_on_pins(phi: float, iou: float | None = None, flat_iou: float | None = None) -> AsCut:
     """Tell how a pinned design moves: all the way to ``phi`` (radians), without strain.
 
-    ``iou`` is that of its checked pieces with the target; without it the motion counts as estimated.
+    Both numbers are those of its checked pieces with target and start; without them the motion counts as estimated.
     """
     source = Source.ESTIMATE if iou is None else Source.SIMULATION
-    return AsCut(0.0, phi, Outcome.CLOSES, 0.0, 0.0, StrainFigure.IN_PLANE, iou, iou, source)
+    return AsCut(0.0, phi, Outcome.CLOSES, 0.0, 0.0, StrainFigure.IN_PLANE, iou, iou, source, flat_iou=flat_iou)
 
 
 def estimated_jam(found: StretchEstimate, tolerated: float = TOLERATED_STRETCH) -> float:
@@ -562,6 +575,7 @@ def simulate(
     target: Outline | None = None,
     kept: Sequence[FloatArray | None] | None = None,
     lead: Leading | None = None,
+    pose: Similarity | None = None,
 ) -> Generator[None, None, SimulatedSheet]:
     """Close a sheet on the connectors of its planned cuts; yields between the steps, for others to have their turn.
 
@@ -579,6 +593,8 @@ def simulate(
         What stays of every panel of a trimmed sheet.
     lead : Leading, optional
         How it is closed; all the way by its mean angle unless given.
+    pose : Similarity, optional
+        Of the design at ``phi`` over the target: of poses that are as good as cut, the one nearby counts.
 
     Raises
     ------
@@ -595,12 +611,12 @@ def simulate(
     lap = None
     if target is not None:
         yield
-        lap = overlap(deployment, found, width_mm, phi, found.jam_phi(), target, False, design)
+        lap = overlap(deployment, found, width_mm, phi, found.jam_phi(), target, False, design, pose)
     table = cut_table(*deployment.sheet.grid)
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
     panels = cut_panels(plan).moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
     as_cut = replace(_simulated(plan, found, jam, phi, lap), source=source)
-    return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made)
+    return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made, None if lap is None else lap.laid)
 
 
 def _closed_with_contacts(
@@ -642,7 +658,7 @@ def simulated(
         Panels that do not hang together.
     """
     motion, kept = deployment or deploy(candidate.final_sheet), None if candidate.trim is None else candidate.trim.kept
-    return result_of(simulate(motion, plan, width_mm, candidate.final_phi, target, kept, lead))
+    return result_of(simulate(motion, plan, width_mm, candidate.final_phi, target, kept, lead, candidate.final_pose))
 
 
 def _simulated(plan: CutPlan, found: Closing, jam: float, phi: float, lap: Overlap | None) -> AsCut:
@@ -691,6 +707,7 @@ def overlap(
     target: Outline,
     forced: bool = True,
     design: Deployment | None = None,
+    pose: Similarity | None = None,
 ) -> Overlap:
     """IoU with the target of the sheet as cut, where it comes to, and as designed.
 
@@ -707,6 +724,8 @@ def overlap(
         Whether it is also measured where the sheet can be forced to; not a number if not.
     design : Deployment, optional
         What it was made from; the sheet that is cut unless given.
+    pose : Similarity, optional
+        Of the design over the target, see :func:`simulate`.
     """
     network = found.sheet.network
     # A sheet that came to the last step goes on to the angle that it is meant for.
@@ -719,5 +738,11 @@ def overlap(
     areas = [covered_area(deployment, network, width_mm, motion) for motion in motions]
     if design is not None and design is not deployment:
         areas[1] = shapely.Polygon(design.outline(phi))
-    as_cut, ideal, *shut = (iou_of_area(area, target) for area in areas)
-    return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal)
+    near = None
+    if pose is not None:
+        posed = PosedDesign(deployment if design is None else design, pose, phi)
+        posed = posed if posed.deployment is deployment else posed.laid_over(deployment)
+        near = CutMotion(found, width_mm, jam, reached, NO_PANELS).nearest(posed, reached)
+    as_cut, laid = pose_of_area(areas[0], target, near)
+    ideal, *shut = (iou_of_area(area, target) for area in areas[1:])
+    return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal, laid)

@@ -142,7 +142,9 @@ def assembled(
         moved_by = settings.moved_by if machine is None else DriveKind.NONE
         drive, refused = driven(plan, moved_by, partial(motions_on_pins, plan.assembly.deployment, settings))
         report = replace(report, problems=(*report.problems, *places.problems, *refused))
-        made = Assembled(plan, report, motion_on_pins(candidate.score.phi, report.figures.match), places, drive)
+        figures = report.figures
+        motion = motion_on_pins(candidate.score.phi, figures.match, figures.flat_match)
+        made = Assembled(plan, report, motion, places, drive)
     _KEPT[key] = made
     while len(_KEPT) > MOST_KEPT:
         _KEPT.popitem(last=False)

@@ -143,6 +143,8 @@ class StartChosen:
     reason: str
 
 
+#: Covers of pinned sheets are made where no pieces match better than this.
+COVERED_PIECES_BELOW = 0.95
 #: How often other designs are trimmed, where none that is trimmed can be cut.
 TRIMMED_FURTHER = 2
 #: What a run reports.
@@ -225,7 +227,14 @@ def run_design(
     Cancelled
         ``cancel`` returned true.
     """
-    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, trimmed_further, with_grid
+    from kirigami_studio.pipeline.run import (
+        covered_on_pins,
+        grid_choice,
+        run,
+        start_choice,
+        trimmed_further,
+        with_grid,
+    )
 
     if request.start.is_auto and request.near is None:
         chosen = start_choice(request)
@@ -250,7 +259,18 @@ def run_design(
                 break
             result = yield from trimmed_further(result, cancel, pool)
             result = yield from ranked_as_cut(result, cut, beside, cancel)
+        if wants_covers_on_pins(result):
+            result = yield from covered_on_pins(result, cancel, pool)
+            result = yield from ranked_as_cut(result, cut, beside, cancel)
         yield Finished(result)
+
+
+def wants_covers_on_pins(result: Result) -> bool:
+    """Whether the pieces of all inspected designs show the target badly."""
+    if not result.request.may_cover_pieces or result.budget_ended:
+        return False
+    made = [result.ranking.made_match(one) for one in result.losses if one not in result.refusals]
+    return max(made, default=0.0) < COVERED_PIECES_BELOW
 
 
 def wants_other_trims(result: Result) -> bool:

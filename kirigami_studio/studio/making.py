@@ -50,6 +50,7 @@ from kirigami_studio.settings.layers import board_layer, hinge_layer, is_backed,
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import kerf_mm, refuse_errors
 from kirigami_studio.studio.file_kinds import FILE_KINDS, kind_of
+from kirigami_studio.studio.two_states import shown_match
 
 if TYPE_CHECKING:
     from kirigami_studio.assembly.backed import BackedSheet
@@ -487,6 +488,15 @@ def _assembly_job(request: CutRequest, made: Assembled, shown: ShapeRings, verdi
     )
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PicturedPieces:
+    """Pieces of a design for thumbnails."""
+
+    request: CutRequest
+    pieces: PosedPieces | None = None  #: None for panels, and where pieces cannot be made
+    verdict: Verdict | None = None  #: On pieces put together; tiles are judged by the sheet below them
+
+
 def posed_pieces(request: CutRequest) -> PosedPieces | None:
     """The pieces of a design over its target, or its tiles on cloth; None for panels.
 
@@ -512,17 +522,23 @@ def posed_pieces(request: CutRequest) -> PosedPieces | None:
     return PosedPieces.of(made.plan, material_for(request.settings), request.settings.fastener, made.held.places)
 
 
-def picturing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[tuple[CutRequest, PosedPieces | None]]:
-    """Make the pieces of designs for thumbnails; None for designs without."""
+def picturing(requests: tuple[CutRequest, ...], cancel: Cancel) -> Iterator[PicturedPieces]:
+    """Make the pieces of designs for thumbnails, and judge them."""
     importing.import_as_cut()
+    from kirigami_studio.studio.assembling import assembled
+    from kirigami_studio.studio.verdict import judge_assembled
+
     for request in requests:
+        candidate, settings, verdict = request.candidate, request.settings, None
         try:
             pieces = posed_pieces(request)
+            if request.is_pinned and request.target is not None:  # kept of its pieces
+                verdict = judge_assembled(candidate, assembled(candidate, settings, request.target), settings)
         except (FabricationError, UsageError):  # which planning explains once the design is chosen
-            pieces = None
-        else:
-            _ = None if pieces is None else pieces.small  # worked out once and kept: here, so that the window need not
-        yield request, pieces
+            yield PicturedPieces(request)
+            continue
+        _ = None if pieces is None else pieces.small  # worked out once and kept: here, so that the window need not
+        yield PicturedPieces(request, pieces, verdict)
 
 
 def writes_layers(request: CutRequest, output: Output) -> bool:
@@ -776,7 +792,13 @@ def picture_job(request: CutRequest) -> ExportJob:
     FabricationError, UsageError
         Pieces that cannot be made.
     """
-    return replace(export_job(request, None), pieces=posed_pieces(request))
+    job = replace(export_job(request, None), pieces=posed_pieces(request))
+    if not request.is_pinned or request.target is None:
+        return job
+    from kirigami_studio.studio.assembling import assembled
+
+    made = assembled(request.candidate, request.settings, request.target)  # kept of its pieces
+    return replace(job, match=shown_match(request.candidate, made.as_cut))
 
 
 def printed_parts(request: CutRequest, cancel: Cancel = never) -> tuple[ExportJob, tuple[PrintedBed | None, ...]]:
@@ -1039,7 +1061,13 @@ def simulating(request: CutRequest, made: Planned, cancel: Cancel) -> Iterator[S
     candidate = request.candidate
     kept = None if candidate.trim is None else candidate.trim.kept
     steps = simulate(
-        request.deployment, made.plan, request.settings.width_mm, candidate.final_phi, request.target, kept
+        request.deployment,
+        made.plan,
+        request.settings.width_mm,
+        candidate.final_phi,
+        request.target,
+        kept,
+        pose=candidate.final_pose,
     )
     yield from in_turns(steps, cancel)
 

@@ -407,7 +407,7 @@ def reading_shape(request: Request, chosen: tuple[int, int] | None, cancel: Canc
         if chosen is not None:
             rows, columns = expected = chosen
             reason = tr(
-                "The designs have {rows} x {columns} voids: the grid that was chosen for this target.",
+                "It chose {rows} x {columns} voids for this target.",
                 rows=rows,
                 columns=columns,
             )
@@ -422,21 +422,9 @@ def _symmetry_sentence(found: TargetSymmetry) -> str:
     mirror, turn = found.axes[0].overlap, max(found.half_turn, found.quarter_turn)
     numbers = {"mirror": 100.0 * mirror, "turn": 100.0 * turn, "least": 100.0 * TOLERANCE}
     if mirror >= TOLERANCE and turn >= TOLERANCE:
-        return tr(
-            "The target is symmetric: it shares {mirror:.1f} % of its area with its mirror image and {turn:.1f} % with "
-            "its turned self.",
-            **numbers,
-        )
+        return tr("Symmetric target: {mirror:.1f} % alike mirrored, {turn:.1f} % turned.", **numbers)
     if mirror >= TOLERANCE:
-        return tr(
-            "The target has a mirror axis: it shares {mirror:.1f} % of its area with its mirror image.", **numbers
-        )
+        return tr("Target with a mirror axis: {mirror:.1f} % alike mirrored.", **numbers)
     if turn >= TOLERANCE:
-        return tr(
-            "The target looks the same turned: it shares {turn:.1f} % of its area with its turned self.", **numbers
-        )
-    return tr(
-        "The target is not symmetric: it shares {mirror:.1f} % of its area with its best mirror image and {turn:.1f} % "
-        "with its turned self; {least:.1f} % would count.",
-        **numbers,
-    )
+        return tr("Target that can be turned: {turn:.1f} % alike.", **numbers)
+    return tr("Free target: {mirror:.1f} % alike mirrored, {turn:.1f} % turned ({least:.1f} % count).", **numbers)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from kirigami_studio.lattice.laying import start_match
 from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
+
+if TYPE_CHECKING:
+    from kirigami_studio.studio.as_cut import AsCut
 
 #: Starts that are no silhouettes, by what their names begin with.
 START_NAMES = {
@@ -68,6 +72,22 @@ def size_words(width_mm: float, height_mm: float) -> str:
 def match_of_start(sheet: Sheet) -> float:
     """IoU of a flat sheet with its start outline, kept: shown with every card."""
     return start_match(sheet)
+
+
+def shown_match(candidate: Candidate, as_cut: AsCut | None) -> float:
+    """IoU (0..1) with the target that is called the match of a design everywhere.
+
+    Of its pieces where they were put together, which grow beyond their lattice; else of its ideal sheet, trimmed if it
+    is.  The lattice's own stays in the score.
+    """
+    return as_cut.iou if as_cut is not None and as_cut.of_pieces and as_cut.iou is not None else candidate.match
+
+
+def shown_flat_match(candidate: Candidate, as_cut: AsCut | None) -> float | None:
+    """The same of the flat design with its start; None where its edge is trimmed off."""
+    if as_cut is not None and as_cut.of_pieces:
+        return as_cut.flat_iou
+    return match_of_start(candidate.sheet) if candidate.trim is None else None
 
 
 def start_outline(start: StartShape, grid: tuple[int, int]) -> FloatArray:
@@ -173,15 +193,22 @@ class TwoStates:
     passed: PassedState | None = None  #: the second target between them
 
     @classmethod
-    def of(cls, candidate: Candidate, design: PosedDesign, target: Outline, width_mm: float) -> TwoStates:
-        """Those of a design whose flat sheet is ``width_mm`` wide."""
-        sheet, trim, deployment = candidate.final_sheet, candidate.trim, design.deployment
+    def of(
+        cls,
+        candidate: Candidate,
+        design: PosedDesign,
+        target: Outline,
+        width_mm: float,
+        as_cut: AsCut | None = None,
+    ) -> TwoStates:
+        """Those of a design whose flat sheet is ``width_mm`` wide, with what is known of it as cut."""
+        sheet, deployment = candidate.final_sheet, design.deployment
         outline = RimPath(*sheet.grid, sheet.start, sheet.cell).outline()
         flat = flat_size(deployment, width_mm)
         opened = opened_size(deployment, design.pose, target, width_mm).opened
         return cls(
-            State(start_of(candidate), outline, flat, match_of_start(sheet) if trim is None else None),
-            State(tr(target.name), target.rings, opened, candidate.score.iou_exact if trim is None else trim.iou),
+            State(start_of(candidate), outline, flat, shown_flat_match(candidate, as_cut)),
+            State(tr(target.name), target.rings, opened, shown_match(candidate, as_cut)),
             candidate.final_phi,
             None if candidate.second is None else PassedState.of(candidate, candidate.second, width_mm),
         )

@@ -93,6 +93,8 @@ HALF_WAY = 0.5
 NEARLY = "as_cut.nearly"
 #: What a close look lets pass: ranking counts the match that is lost.
 BEARABLE = frozenset({NEARLY, "as_cut.loses_match", "pinned.target_missed"})
+#: The same of covers on pins, whose ranking has a price for what they give up of the flat sheet.
+BEARABLE_OF_COVERS = BEARABLE | {"pinned.flat_outline_spoilt"}
 #: Warnings about a file that are about importing it, not about the sheet.
 ABOUT_IMPORTING = frozenset({"verify.no_unit_in_r12"})
 
@@ -224,6 +226,11 @@ class Verdict:
     def ok(self) -> bool:
         """Ready to cut, without a problem."""
         return self.level is Level.READY
+
+    @property
+    def refusal(self) -> Problem | None:
+        """The problem for which others are ranked before it, if any; lost match is none."""
+        return _refusal(self.problems)
 
     @property
     def is_estimate(self) -> bool:
@@ -386,7 +393,9 @@ def closing_as_cut(
     """The same step by step."""
     kept = None if candidate.trim is None else candidate.trim.kept
     try:
-        sheet = yield from simulate(deployment, plan, width_mm, candidate.final_phi, target, kept)
+        sheet = yield from simulate(
+            deployment, plan, width_mm, candidate.final_phi, target, kept, pose=candidate.final_pose
+        )
     except KirigamiError as error:
         return str(error)
     return sheet.as_cut
@@ -450,9 +459,12 @@ def looking(
     if found.level is Level.FAILS or small is not None:
         return CloseLook(small or found.problems[0])
     as_cut = yield from closing_as_cut(candidate, motion, plan, settings.width_mm, target)
-    new = (one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems)
-    refusal = next((problem for problem in new if problem.code not in BEARABLE), None)
-    return CloseLook(refusal, None if isinstance(as_cut, str) else as_cut)
+    new = [one for one in judge(candidate, plan, report, as_cut).problems if one not in found.problems]
+    return CloseLook(_refusal(new), None if isinstance(as_cut, str) else as_cut)
+
+
+def _refusal(problems: Sequence[Problem], bearable: frozenset[str] = BEARABLE) -> Problem | None:
+    return next((problem for problem in problems if problem.code not in bearable), None)
 
 
 def _crowded(plan: CutPlan) -> Note | None:
@@ -475,9 +487,9 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
     except KirigamiError as error:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made, settings)
-    gained = made.report.figures.match - candidate.score.iou_exact
-    refusal = next((problem for problem in found.problems if problem.code not in BEARABLE), None)
-    return CloseLook(refusal, made.as_cut, gained)
+    gained = made.report.figures.match - candidate.match
+    cover = candidate.trim is not None and candidate.trim.given_up
+    return CloseLook(_refusal(found.problems, BEARABLE_OF_COVERS if cover else BEARABLE), made.as_cut, gained)
 
 
 def refused(error: KirigamiError) -> Verdict:

@@ -122,9 +122,19 @@ def test_that_every_job_checks_out_sets_up_and_plays_tests(jobs: dict[str, Any])
 @pytest.mark.parametrize(
     ("user", "apt", "said", "installed"),
     [
-        (1000, True, r"are missing: libegl1 .*xdotool\. Run: sudo apt-get install libegl1 .*xdotool xvfb$", False),
-        (1000, False, r"there is no apt-get .*: libEGL\.so\.1 .*xdotool\. .* they are called libegl1 ", False),
-        (0, True, r"^Installing system packages for the window: libegl1 .*xdotool$", True),
+        (
+            1000,
+            True,
+            r"are missing: libegl1 .*xdotool dbus.*\. Run: sudo apt-get install libegl1 .*dbus.* xvfb$",
+            False,
+        ),
+        (
+            1000,
+            False,
+            r"there is no apt-get .*: libEGL\.so\.1 .*dbus-daemon.*\. .* they are called libegl1 ",
+            False,
+        ),
+        (0, True, r"^Installing system packages for the window: libegl1 .*xdotool dbus.*$", True),
     ],
 )
 def test_that_system_packages_are_installed_or_named(

@@ -77,6 +77,18 @@ def test_that_other_connectors_are_closed_anew_and_known_ones_at_once(jammed: Ma
     assert stage.as_cut.text().startswith("Closes as cut: ") and not reader.busy
 
 
+@pytest.mark.parametrize("name", ["closed", "jammed"])
+def test_that_missing_and_extra_area_agree_with_the_match_as_cut(name: str, request: pytest.FixtureRequest) -> None:
+    window: MainWindow = request.getfixturevalue(name)
+    view, sheet = window.stage.view, window.services.as_cut.state.sheet
+    assert sheet is not None and sheet.as_cut.iou is not None
+    window.stage.deployment.set_phi(sheet.as_cut.phi)  # a sheet that jams is drawn where it does
+    view.grab()
+    assert view.areas is not None
+    found = (1.0 - view.areas.missing_share) / (1.0 + view.areas.extra_share)
+    assert found == pytest.approx(sheet.as_cut.iou, abs=1e-6)
+
+
 def test_that_other_files_are_no_reason_to_close_the_sheet_again(closed: MainWindow, until: Until) -> None:
     reader = closed.services.as_cut
     before = reader.state.sheet

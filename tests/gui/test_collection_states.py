@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -17,7 +17,8 @@ from kirigami_studio.project.document import Mark
 class OneOfEach(StateSheet):
     """Takes every picture once, in the size and theme there is."""
 
-    def all_sizes(self, name: str) -> None:
+    def all_sizes(self, name: str, ready: Callable[[], object] = lambda: None) -> None:
+        ready()
         self.picture(name)
 
 

@@ -147,7 +147,7 @@ def test_that_plus_and_minus_belong_to_the_board_only_while_it_is_open(heart: Ma
 
 def test_that_leaving_the_editor_says_what_comes_next(plate: MainWindow, qtbot: QtBot) -> None:
     use(plate, Tool.POSE)
-    assert plate.status_text.text().startswith("Click a shape")
+    assert plate.status_text.text().startswith("Click to select")
     qtbot.mouseClick(plate.target.tools.done_button, LEFT)
     assert not plate.target.editing and plate.status_text.text().startswith("Press Generate")
 
@@ -473,6 +473,26 @@ def test_that_the_editor_paints_in_both_themes_and_every_tool(plate: MainWindow)
         for tool in Tool:
             use(plate, tool)
             assert not plate.target.view.grab(plate.target.view.rect()).isNull()
+
+
+def test_that_a_plate_with_a_hole_and_a_word_are_drawn_by_keys_alone(board: MainWindow, qtbot: QtBot) -> None:
+    view = board.target.view
+    use(board, Tool.RECTANGLE)
+    qtbot.keyClick(view, Qt.Key.Key_Return)
+    low, high = newest(board).ring.min(axis=0), newest(board).ring.max(axis=0)
+    assert high == pytest.approx(-low) and (high - low).min() >= 30.0  # about the origin, large enough to be moved
+    use(board, Tool.ELLIPSE, Combine.SUBTRACT)
+    qtbot.keyClick(view, Qt.Key.Key_Return)
+    target = board.session.document.target
+    assert target is not None and len(target.holes) == 1
+    hole = placed(board).polygon.interiors[0].bounds
+    assert hole == pytest.approx((*(0.5 * low), *(0.5 * high)), abs=1.0)
+    board.commands["clear"].trigger()
+    use(board, Tool.TEXT, Combine.NEW)
+    field = board.target.tools.options.text
+    field.setText("L")
+    qtbot.keyClick(field, Qt.Key.Key_Return)
+    assert newest(board).polygon.area > 0.0 and board.target.view.hasFocus()
 
 
 # the hint -----------------------------------------------------------------------------------------

@@ -11,12 +11,13 @@ import pytest
 from ezdxf.math import Vec3
 from ezdxf.path import make_path
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLabel, QWidget
+from PySide6.QtWidgets import QApplication, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.session.messages import Tone
-from kirigami_studio.gui.widgets.readable import readable_length
+from kirigami_studio.gui.widgets.readable import readable_length, readable_range, readable_time
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import WindowPage
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -128,3 +129,17 @@ def test_that_the_summary_no_longer_says_trimmed_once_the_trim_is_off(designed: 
     assert said == []
     tips = [one.toolTip() for one in designed.findChildren(QWidget) if "Trimmed:" in one.toolTip()]
     assert tips == []
+
+
+def test_that_a_long_cut_takes_hours() -> None:
+    assert [readable_time(seconds) for seconds in (90.0, 600.0, 7200.0)] == ["90 s", "10.0 min", "2.0 h"]
+    assert readable_range(6900.0, 7080.0).endswith(" min")
+    assert readable_range(23_208.0, 24_408.0) == "6.4\N{EN DASH}6.8 h"
+
+
+def test_that_a_figure_without_room_ends_in_dots_and_is_whole_in_its_tooltip(designed: MainWindow) -> None:
+    designed.pages.turn(WindowPage.MAKE)
+    QApplication.processEvents()
+    shown = designed.fabrication.numbers["pieces"]
+    shown.setText("81 + 138 pins and a few more")
+    assert shown.drawn_text().endswith("\N{HORIZONTAL ELLIPSIS}") and shown.toolTip() == shown.text()

@@ -27,6 +27,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.widgets.canvas import Canvas
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.studio.making import ExportedFiles
 
 CONTROLS = (
@@ -110,6 +111,16 @@ def test_that_a_screen_reader_has_a_name_for_every_control(designed: MainWindow)
         assert nameless == [], opened.__name__
     assert designed.dialogs.picker is not None
     designed.dialogs.picker.close()
+
+
+def test_that_a_screen_reader_says_what_every_label_shows(designed: MainWindow) -> None:
+    for page in WindowPage:
+        designed.pages.turn(page)
+        QApplication.processEvents()
+        labels = [one for one in designed.findChildren(QLabel) if one.isVisible() and one.text() and not inner(one)]
+        plain = [one for one in labels if one.textFormat() != Qt.TextFormat.RichText]
+        assert len(plain) > 10
+        assert [(one.text(), told(one)) for one in plain if told(one) != one.text().replace("&", "")] == [], page
 
 
 def test_that_the_report_of_an_export_is_named_too(designed: MainWindow, files: object, until: Until, tmp_path) -> None:  # type: ignore[no-untyped-def]

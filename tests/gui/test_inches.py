@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
-from PySide6.QtWidgets import QAbstractSpinBox, QApplication, QComboBox, QLabel, QLineEdit, QWidget
+from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QApplication, QComboBox, QLabel, QLineEdit, QWidget
 
+from kirigami_studio.foundation.words import ShownUnit
 from kirigami_studio.gui.target.rulers import RULER
 from kirigami_studio.gui.widgets.fitted_text import CONTROLS
 from kirigami_studio.gui.widgets.readable import (
-    ShownUnit,
     readable_area,
     readable_feature,
     readable_length,
@@ -25,7 +26,13 @@ from kirigami_studio.gui.widgets.readable import (
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.pages import WindowPage
 
-MM = re.compile(r"\bmm\b|\bmm²|illimet")
+Until = Callable[[Callable[[], bool]], None]
+MM = re.compile(r"\bmm\b(?!/)|illimet")
+#: Files and names of materials stay in mm, and mm may still be typed.
+FILES = re.compile(
+    r"(file|sheet|solid|plan as SVG|elements|Tables|FOLD|print|true|from)[^.;]{0,12}\bmm\b|\d mm, |mm can .*|in mm, or|"
+    r"(?s:material_?(note|name|gaps|s|) (ComboBox|QLineEdit).*)"
+)
 
 
 @pytest.fixture
@@ -40,26 +47,61 @@ def inches(designed: MainWindow, tmp_path: Path) -> Iterator[MainWindow]:
 
 
 def texts(root: QWidget) -> dict[str, str]:
-    """What is read on labels, in fields, and by a screen reader, by where it stands; no sentence of the checks."""
+    """What is read on labels, in fields and tooltips, and by a screen reader, by where it stands."""
     found = {}
-    for number, part in enumerate(root.findChildren(QWidget)):
+    for number, part in enumerate((root, *root.findChildren(QWidget))):
         name = f"{number} {part.objectName()} {part.metaObject().className()}"
-        if isinstance(part, QLabel) and part is not getattr(root, "warnings", None):
-            found[name] = part.text()
-        if isinstance(part, QAbstractSpinBox | QLineEdit):
+        if isinstance(part, QLabel | QAbstractSpinBox | QLineEdit | QAbstractButton):
             found[name] = part.text()
         if isinstance(part, (*CONTROLS, QComboBox)):
-            found[f"{name}: spoken"] = part.accessibleName()
+            found[f"{name}: spoken"] = f"{part.accessibleName()} {part.accessibleDescription()}"
+        found[f"{name}: tip"] = part.toolTip()
+        for action in part.actions():
+            found[f"{name}: {action.text()}"] = f"{action.text()} {action.toolTip()} {action.statusTip()}"
     return found
 
 
-def test_that_no_label_field_or_spoken_name_tells_of_mm_in_inches(inches: MainWindow) -> None:
+def in_mm(root: QWidget) -> dict[str, str]:
+    return {place: text for place, text in texts(root).items() if MM.search(FILES.sub("", f"{place} {text}"))}
+
+
+def test_that_no_label_field_tooltip_or_spoken_name_tells_of_mm_in_inches(inches: MainWindow) -> None:
     for page in WindowPage:
         inches.pages.turn(page)
-        for root in (inches.target, inches.settings, inches.fabrication, inches.cuts, inches.gallery):
-            told = {place: text for place, text in texts(root).items() if MM.search(text)}
-            told = {place: text for place, text in told.items() if text not in inches.fabrication.warnings.text()}
-            assert told == {}, page
+        assert in_mm(inches) == {}, page
+
+
+def test_that_verdicts_and_refusals_are_in_inches(inches: MainWindow, until: Until) -> None:
+    services, verdict = inches.services, inches.services.verdict
+    services.fabrication.change(kerf_mm=4.0)
+    until(lambda: not inches.fabrication.export.isEnabled() and verdict.state.verdict is not None)
+    assert in_mm(inches) == {} and " in " in inches.fabrication.warnings.text()
+    services.fabrication.change(kerf_mm=None, material="card-co2", connector_mm=0.9)
+    until(lambda: verdict.state.verdict is not None and verdict.state.verdict.as_cut is not None)
+    assert in_mm(inches) == {}
+
+
+def test_that_dialogs_are_in_inches(inches: MainWindow) -> None:
+    inches.commands["print"].trigger()
+    inches.dialogs.show_materials()
+    for dialog in (inches.dialogs.printing, inches.dialogs.materials):
+        assert dialog is not None and in_mm(dialog) == {}
+        dialog.close()
+
+
+def test_that_plots_are_in_inches_and_in_mm_again(inches: MainWindow, until: Until) -> None:
+    inches.pages.turn(WindowPage.DESIGN)
+    inches.stage.plots_switch.click()
+    plots = inches.stage.plots
+    until(lambda: plots.complete)
+    chart = next(chart for chart in plots.charts if chart.accessibleName().endswith(", in"))
+    shown = chart.curves[0].getData()[1].copy()
+    inches.commands["inches"].trigger()
+    assert chart.accessibleName().endswith(", mm")
+    np.testing.assert_allclose(chart.curves[0].getData()[1], 25.4 * shown)
+
+
+def test_that_fields_captions_and_numbers_are_in_inches(inches: MainWindow) -> None:
     form = inches.fabrication.form
     assert form.fields["kerf_mm"].accessibleName() == "Kerf in inches"
     captions = [label.text() for label in inches.fabrication.findChildren(QLabel)]

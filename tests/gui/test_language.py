@@ -13,12 +13,13 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, QLocale
 from PySide6.QtGui import QKeySequence
-from PySide6.QtWidgets import QApplication, QDialogButtonBox, QLabel, QMenu, QPushButton
+from PySide6.QtWidgets import QApplication, QDialogButtonBox, QLabel, QMenu, QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.foundation.words import language, number, tr
 from kirigami_studio.gui.session.messages import Message
 from kirigami_studio.gui.target.target_view import TargetView
+from kirigami_studio.gui.widgets.fitted_text import CONTROLS, wrapped
 from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
@@ -286,6 +287,14 @@ def test_that_the_sheet_of_shortcuts_is_german(window: MainWindow) -> None:
     assert window.dialogs.shortcuts is not None
     lines = dict(window.dialogs.shortcuts.showing())
     assert lines["Das Projekt speichern"] == "Strg+S"
+
+
+@pytest.mark.usefixtures("german")
+def test_that_german_tooltips_are_two_short_lines(window: MainWindow) -> None:
+    controls = [one for one in window.findChildren(QWidget) if isinstance(one, CONTROLS) and one.toolTip()]
+    plain = [one for one in controls if one.objectName() not in ("machine", "material")]  # these add notes of files
+    assert len(plain) > 60
+    assert [one.objectName() for one in plain if wrapped(one.toolTip()).count("\n") > 1] == []
 
 
 @pytest.mark.usefixtures("german")

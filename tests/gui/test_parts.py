@@ -386,3 +386,15 @@ def test_that_a_click_on_nothing_keeps_what_was_taken_and_says_so(still_life: Pa
     for x, y in ((10, 10), (10, 12)):
         click_photo(picker, until, x, y, Qt.MouseButton.RightButton)
     assert picker.chosen == taken and made_size(picker) == pytest.approx((80, 120), abs=2)
+
+
+def test_that_a_click_on_what_is_chosen_takes_the_object_there_and_leaves_nothing_out(
+    still_life: PartPicker, until: Until
+) -> None:
+    picker = still_life
+    assert picker._read is not None
+    (number,) = picker.chosen
+    middle = picker._read.source.parts[number - 1].region.representative_point()
+    click_photo(picker, until, middle.x, 300.0 - middle.y, Qt.MouseButton.LeftButton)
+    assert len(picker.chosen) == 1 and picker._read.photo is not None and picker._read.photo.strokes.taken
+    assert min(made_size(picker)) > 50 and picker.take.isEnabled()

@@ -4,19 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor
 
 from kirigami_studio.assembly.posed_pieces import PosedPieces
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.gui.gallery import card_delegate, design_table
+from kirigami_studio.gui.gallery.gallery_model import MATCH_ROLE
 from kirigami_studio.gui.stage.piece_items import colour_of
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.assembling import assembled
+from kirigami_studio.studio.making import CutRequest
+from kirigami_studio.studio.verdict import Verdict
 from tests.pinned_assemblies import plain_pinwheel
 
 Until = Callable[[Callable[[], bool]], None]
@@ -139,3 +147,58 @@ def test_that_fixes_of_pieces_are_tried_in_the_worker_and_told_with_their_verdic
 def same(one: QColor, other: QColor) -> bool:
     parts = zip(one.getRgb(), other.getRgb(), strict=True)
     return max(abs(a - b) for a, b in parts) <= 2  # type: ignore[operator]
+
+
+def test_that_card_table_header_status_and_comparison_show_the_match_of_the_pieces(
+    pinned: MainWindow, until: Until
+) -> None:
+    services, stage, model = pinned.services, pinned.stage, pinned.gallery.view.model_
+    until(lambda: all_made(pinned) and len(services.estimates.verdicts) == 2)
+    session, shown = pinned.session, pinned.session.stage
+    assert shown is not None
+    for candidate in session.document.candidates:
+        made = assembled(candidate, session.document.fabrication, pinned.session.document.target)
+        index = model.index(model.row_of(candidate), 0)
+        assert index.data(MATCH_ROLE) == made.report.figures.match == model.verdict_of(candidate).match
+        assert f"{100 * candidate.score.iou_exact:.2f} %" in index.data(Qt.ItemDataRole.ToolTipRole)
+        assert f"{100 * made.report.figures.match:.1f} %" in index.data(Qt.ItemDataRole.AccessibleTextRole)
+    figures = assembled(shown.candidate, session.document.fabrication, session.document.target).report.figures
+    match, flat = f"{100 * figures.match:.1f} %", f"{100 * figures.flat_match:.1f} %"
+    assert match != f"{100 * shown.candidate.match:.1f} %"
+    assert all(match in text for text in stage._texts())
+    assert match in stage.ends.target.accessibleName() and flat in stage.ends.start.accessibleName()
+    assert match in pinned.facts.text()
+    pinned.presenters.comparison.show(True)
+    assert {pane.figures.values["match"].text() for pane in stage.compare.shown} >= {match}
+
+
+def test_that_missing_and_extra_area_agree_with_the_match_of_the_pieces(pinned: MainWindow, until: Until) -> None:
+    view, session = pinned.stage.view, pinned.session
+    until(lambda: view._pieces is not None)
+    assert session.stage is not None and session.document.target is not None
+    view.grab()
+    made = assembled(session.stage.candidate, session.document.fabrication, session.document.target)
+    assert view.areas is not None
+    found = (1.0 - view.areas.missing_share) / (1.0 + view.areas.extra_share)
+    assert found == pytest.approx(made.report.figures.match, abs=1e-6)
+
+
+def test_that_cards_are_ranked_by_the_match_that_they_show(pinned: MainWindow, until: Until) -> None:
+    services, model = pinned.services, pinned.gallery.view.model_
+    until(lambda: all_made(pinned) and len(services.estimates.verdicts) == 2)
+    first, last = (entry.candidate for entry in model.all_entries)
+    document, verdict = pinned.session.document, model.verdict_of(first)
+    assert verdict.as_cut is not None
+
+    def judge(candidate: Candidate, verdict: Verdict) -> None:
+        request = CutRequest.of(replace(document, chosen=document.candidates.index(candidate)))
+        services.estimates.take_verdict(request, verdict)
+
+    judge(first, replace(verdict, as_cut=replace(verdict.as_cut, iou=0.9, ideal_iou=0.9), match=0.9))
+    assert [entry.candidate for entry in model.all_entries] == [last, first] and model.match_of(first) == 0.9
+    assert [model.ranking.made_match(one) for one in (last, first)] == pytest.approx(
+        [model.match_of(one) for one in (last, first)]
+    )
+    broken = Problem.error("pinned.falls_apart", piece="A1", count=1)
+    judge(last, replace(model.verdict_of(last), problems=(broken,)))
+    assert [entry.candidate for entry in model.all_entries] == [first, last]

@@ -129,6 +129,16 @@ def test_that_the_dialog_shows_the_pages_and_its_paper_is_the_projects(
     assert dialog.printers.text() == ""
 
 
+def test_that_the_dialog_says_so_while_the_pages_are_laid_out(designed: MainWindow, until: Until) -> None:
+    designed.commands["print"].trigger()
+    dialog = designed.dialogs.printing
+    assert dialog is not None and dialog.pages is None
+    assert "Laying out" in dialog.about.text() and not (dialog.pdf.isEnabled() or dialog.print_.isEnabled())
+    until(lambda: dialog.pages is not None)
+    assert dialog.pdf.isEnabled() and "Laying out" not in dialog.about.text()
+    dialog.close()
+
+
 def test_that_without_a_printer_the_pages_become_a_pdf(
     designed: MainWindow, until: Until, files: object, tmp_path: Path
 ) -> None:

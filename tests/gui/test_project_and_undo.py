@@ -98,7 +98,7 @@ def test_that_a_new_project_asks_before_it_forgets(designed: MainWindow) -> None
     before = designed.session.document
     designed.commands["new"].trigger()
     assert designed.session.document is before
-    dict(designed.messages.messages[-1].actions)["Start a new project without saving"]()
+    dict(designed.messages.messages[-1].actions)["Don't save"]()
     assert designed.session.document == NEW
 
 

@@ -202,7 +202,7 @@ def test_that_recovering_asks_before_it_takes_the_place_of_unsaved_work(
     dict(asked(designed)[0].actions)["Recover"]()
     assert designed.session.document is before
     question = next(one for one in designed.messages.messages if "unsaved changes" in one.sentence)
-    dict(question.actions)["Recover another project without saving"]()
+    dict(question.actions)["Don't save"]()
     until(lambda: designed.session.document.chosen == 2)
     assert designed.session.path is None and designed.session.history.unsaved
 

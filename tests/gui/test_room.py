@@ -9,6 +9,7 @@ from PySide6.QtCore import QPoint, QRect
 from PySide6.QtWidgets import QApplication, QToolBar, QToolButton, QWidget
 from pytestqt.qtbot import QtBot
 
+from kirigami_studio.gui.make.fabrication_panel import LEAST_CHOICES
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.pages import WindowPage
@@ -128,6 +129,19 @@ def test_that_messages_move_nothing_and_hide_no_button_of_the_tool_bar(
     assert words.height() >= words.heightForWidth(words.width()), "all of the sentence is seen"
 
 
+def test_that_a_long_name_of_the_project_leaves_the_tool_bar_and_messages_in_the_window(designed: MainWindow) -> None:
+    designed.heading.setText(LONG)
+    resized(designed, 1000, 640)
+    designed.messages.add(Message("Saved heart.kiri.", Tone.WARNING))
+    resized(designed, 1000, 640)
+    buttons = [part for part in designed.findChildren(QToolButton) if part.defaultAction() is not None]
+    buttons = [button for button in buttons if isinstance(button.parent(), QToolBar)]
+    assert len(buttons) > 8
+    for part in (*buttons, designed.messages):
+        corner = part.mapTo(designed, QPoint())
+        assert part.isVisible() and designed.rect().contains(QRect(corner, part.size())), part.objectName()
+
+
 def test_that_a_message_is_low_where_its_buttons_stand_below_it(designed: MainWindow) -> None:
     resized(designed, 1000, 640)
     designed.messages.add(Message("Saved heart.kiri.", Tone.DONE))
@@ -136,3 +150,28 @@ def test_that_a_message_is_low_where_its_buttons_stand_below_it(designed: MainWi
     designed.messages.add(Message(LONG[:170], Tone.ERROR, "line", actions=(("Open another …", lambda: None),)))
     resized(designed, 1000, 640)
     assert short <= 48 and designed.messages.height() <= 96
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1000, 640)])
+def test_that_the_choices_of_making_end_below_a_whole_row(designed: MainWindow, width: int, height: int) -> None:
+    designed.pages.turn(WindowPage.MAKE)
+    designed.resize(width, height)
+    QApplication.processEvents()
+    scrolled = designed.fabrication.scrolled
+    seen = scrolled.viewport().rect()
+    assert seen.height() >= LEAST_CHOICES // 2 and scrolled.verticalScrollBar().value() == 0
+    for field in designed.fabrication.form.fields.values():
+        if field.isVisible():
+            top = field.mapTo(scrolled.viewport(), QPoint()).y()
+            assert top + field.height() <= seen.height() or top >= seen.height(), field.objectName()
+
+
+@pytest.mark.parametrize("page", WindowPage)
+def test_that_the_primary_button_is_whole_in_a_small_window(designed: MainWindow, page: WindowPage) -> None:
+    designed.resize(1000, 640)
+    designed.pages.turn(page)
+    QApplication.processEvents()
+    button = designed.fabrication.export if page is WindowPage.MAKE else designed.run.generate
+    corner = button.mapTo(designed, QPoint())
+    assert button.isVisible() and designed.rect().contains(QRect(corner, button.size()))
+    assert button.width() >= button.sizeHint().width()

@@ -7,10 +7,12 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from PySide6.QtCore import QSize
 from pytestqt.qtbot import QtBot
 from shown_sheets import shown
 
-from kirigami_studio.lab.demonstrations.board_states import LARGE, SIZES
+from kirigami_studio.gui.window.pages import WindowPage
+from kirigami_studio.lab.demonstrations.board_states import SIZES
 from kirigami_studio.lab.demonstrations.state_sheet import StateSheet, contact_sheets
 
 
@@ -31,12 +33,24 @@ def test_that_each_size_and_theme_gets_its_picture(sheet: StateSheet, tmp_path: 
         assert shown["light"] > 2 * shown["dark"]
 
 
-def test_that_a_large_screen_gets_the_states_that_look_different_there(sheet: StateSheet, tmp_path: Path) -> None:
-    assert LARGE in sheet.sizes("designs") and LARGE not in sheet.sizes("empty")
-    sheet.window.resize(LARGE)
-    sheet.picture("designs-2560x1440-light")
-    with Image.open(tmp_path / "designs-2560x1440-light.png") as picture:
-        assert picture.size == (2560, 1440)
+def test_that_each_page_gets_its_picture(sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[1:])
+    sheet.all_pages("empty")
+    for page in ("shape", "design", "make"):
+        assert (tmp_path / f"{page}-empty-1280x720-dark.png").exists()
+    assert sheet.window.pages.page is WindowPage.SHAPE
+
+
+def test_that_the_refused_pages_leave_no_message_and_the_cuts_as_they_were(
+    sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[1:])
+    sheet.window.files.open_sample()
+    sheet.until(sheet.window.fabrication.export.isEnabled, "the sample was not opened")
+    before = sheet.window.session.document
+    sheet.refused()
+    assert sheet.window.messages.messages == () and sheet.window.session.document == before
+    assert (tmp_path / "make-refused-1280x720-dark.png").exists() and (tmp_path / "question-1280x720-dark.png").exists()
 
 
 def test_that_a_contact_sheet_shows_every_picture_of_its_size_and_theme_with_a_caption(tmp_path: Path) -> None:
@@ -68,7 +82,7 @@ def test_that_the_photo_state_shows_a_threshold(sheet: StateSheet) -> None:
 def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[1:2])
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[1:])
     sheet.starts()
     for name in ("start-menu", "start-board-dark", "pairs-light", "pair-1280x720-dark"):
         assert (tmp_path / f"{name}.png").exists()
@@ -79,8 +93,8 @@ def test_that_the_start_states_show_the_board_the_pairs_and_an_opened_pair(
 def test_that_the_second_target_is_shown_at_its_angle(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[2:])
-    sheet.window.resize(SIZES[2])
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", (QSize(1440, 900),))
+    sheet.window.resize(1440, 900)
     sheet.choose_heart()
     sheet.second_target()
     stage = sheet.window.stage
@@ -89,17 +103,10 @@ def test_that_the_second_target_is_shown_at_its_angle(
         assert (tmp_path / f"{name}.png").exists()
 
 
-def test_that_the_message_states_leave_no_message(sheet: StateSheet, tmp_path: Path) -> None:
-    sheet.picture_target()
-    sheet.messages()
-    assert sheet.window.messages.messages == ()
-    assert (tmp_path / "question-1000x640-dark.png").exists()
-
-
 def test_that_the_project_states_offer_lost_work_and_leave_none(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kirigami_studio.lab.demonstrations.state_sheet.SIZES", SIZES[1:2])
+    monkeypatch.setattr("kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[1:])
     sheet.window.services.fabrication.change(width_mm=88.0)
     sheet.project()
     assert sheet.window.messages.messages == () and not list((tmp_path / "recovery").glob("left*"))
@@ -111,7 +118,7 @@ def test_that_the_editor_states_show_tools_and_a_marked_arm(
     sheet: StateSheet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        "kirigami_studio.lab.demonstrations.state_sheet.SIZES", SIZES[1:2]
+        "kirigami_studio.lab.demonstrations.board_states.SIZES", SIZES[1:]
     )  # one is enough, each takes seconds
     sheet.editor()
     target = sheet.window.target

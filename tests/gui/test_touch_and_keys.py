@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
@@ -98,7 +99,10 @@ def test_that_starts_second_targets_and_questions_are_pressed_as_easily(designed
     assert listed.sizeHintForRow(0) >= TOUCH - 1
 
 
-@pytest.mark.parametrize("command", ["print", "materials", "shortcuts", "about", "guide", "artwork"])
+DIALOGS = ["print", "materials", "shortcuts", "about", "guide", "artwork", "history", "library", "rename"]
+
+
+@pytest.mark.parametrize("command", DIALOGS)
 def test_that_dialogs_are_pressed_as_easily(designed: MainWindow, command: str) -> None:
     designed.commands[command].trigger()
     settle()
@@ -169,3 +173,31 @@ def test_that_a_screen_reader_has_a_name_and_a_role_for_all_that_is_reached(
         assert one.text(QAccessible.Text.Name).strip("&… "), named(widget)
         assert one.role() not in (QAccessible.Role.NoRole, QAccessible.Role.Client), (named(widget), one.role())
     assert found > 15
+
+
+def test_that_buttons_on_cards_are_as_large_and_leave_the_picture_room(designed: MainWindow) -> None:
+    view, cards = designed.gallery.view, designed.gallery.view.itemDelegate()
+    cell = view.visualRect(view.model_.index(0, 0))
+    boxes = list(cards.button_boxes(cell).values())  # type: ignore[attr-defined]
+    assert len(boxes) == 2 and not boxes[0].intersects(boxes[1])
+    for box in boxes:
+        assert min(box.width(), box.height()) >= TOUCH and cell.contains(box)
+
+
+def test_that_the_picker_of_parts_and_the_report_are_pressed_as_easily(
+    designed: MainWindow, files: object, until: Until, tmp_path: Path
+) -> None:
+    drawing = '<circle cx="20" cy="20" r="15"/><rect x="50" y="5" width="40" height="30"/>'
+    (tmp_path / "logo.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{drawing}</svg>', encoding="utf-8")
+    designed.files.open(str(tmp_path / "logo.svg"))
+    until(lambda: designed.dialogs.parts is not None and designed.dialogs.parts.isVisible())
+    assert designed.dialogs.parts is not None
+    settle()
+    assert small(designed.dialogs.parts) == []
+    designed.dialogs.parts.reject()
+    files.answer = tmp_path / "cut.dxf"  # type: ignore[attr-defined]
+    designed.commands["export"].trigger()
+    until(lambda: designed.dialogs.report is not None and designed.dialogs.report.isVisible())
+    assert designed.dialogs.report is not None
+    settle()
+    assert small(designed.dialogs.report) == []

@@ -11,7 +11,7 @@ import ezdxf
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QLabel
 from pytestqt.qtbot import QtBot
 from trimmed_panels import deployed_parts
 
@@ -19,6 +19,7 @@ from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.widgets.mismatch_items import mismatch
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.polish.levenberg import polish
 from kirigami_studio.project import store
@@ -118,11 +119,27 @@ def test_that_both_figures_of_a_trimmed_design_stay_apart(trimmed: MainWindow) -
     assert f"trimmed match {100 * trim.iou:.1f} %" in trimmed.facts.text() and f"match {whole}" in trimmed.facts.text()
     model = trimmed.gallery.view.model_
     assert [entry.candidate for entry in model.entries] == list(trimmed.session.document.candidates)
-    card = str(model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleTextRole))
+    card = str(model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleDescriptionRole))
     assert f"sIoU {100 * candidate.score.siou:.2f} %" in card and f"Trimmed: IoU {100 * trim.iou:.2f} %" in card
     trimmed.resize(1000, 640)
     QApplication.processEvents()
     assert trimmed.stage.numbers.text() == "" and "untrimmed" in trimmed.stage.view.caption
+
+
+def test_that_nothing_says_trimmed_once_the_trim_is_taken_off(trimmed: MainWindow, until: Until) -> None:
+    def said() -> list[str]:
+        labels = [part.text() for part in trimmed.findChildren(QLabel) if part.isVisible()]
+        model, caption = trimmed.gallery.view.model_, trimmed.stage.view.caption
+        cards = [str(model.data(model.index(row, 0), Qt.ItemDataRole.AccessibleTextRole)) for row in range(2)]
+        return [text for text in (*labels, caption, *cards) if "trimmed" in text.lower()]
+
+    assert len(said()) > 2
+    trimmed.commands["trim"].trigger()
+    until(lambda: trimmed.fabrication.export.isEnabled() and not trimmed.services.chosen.trimming.busy)
+    for page in WindowPage:
+        trimmed.pages.turn(page)
+        QApplication.processEvents()
+        assert said() == [], page
 
 
 def test_that_a_trimmed_design_is_drawn_and_compared_as_it_is_cut(trimmed: MainWindow) -> None:

@@ -14,6 +14,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.fabricate.options import ConnectorStyle
 from kirigami_studio.gui.gallery.gallery_model import VERDICT_ROLE
+from kirigami_studio.gui.make.verdict_bar import WIDE
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.widgets.verdict_marks import badges_of, closing_text
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -129,6 +130,28 @@ def test_that_message_report_and_record_have_the_same_list(
     assert message.tone is Tone.WARNING and message.sentence.endswith(verdict.problems[0].text)
     record = json.loads((tmp_path / "all" / "heart.json").read_text())
     assert record["verdict"] == json.loads(json.dumps(report.judged.to_json()))
+
+
+def test_that_an_export_tries_no_fixes_again(
+    jamming: MainWindow, until: Until, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keeper, started = jamming.services.verdict, []
+    advice = keeper.state.advice
+    assert advice is not None and advice.fixes
+    monkeypatch.setattr(keeper, "_start", lambda name, *_: started.append(name))
+    jamming.services.exporter.export(tmp_path / "cut.dxf")
+    until(lambda: jamming.dialogs.report is not None)
+    QApplication.processEvents()
+    assert started == [] and not keeper.busy and keeper.state.advice is advice
+
+
+def test_that_a_sentence_of_the_banner_ends_within_it(jamming: MainWindow) -> None:
+    bar = jamming.stage.verdict
+    for width in range(WIDE, WIDE + 60, 7):
+        bar.resize(width, bar.height())
+        text, metrics = bar.sentence.text(), bar.sentence.fontMetrics()
+        assert text and metrics.horizontalAdvance(text) <= bar.sentence.width(), width
+        assert not bar.sentence.wordWrap()
 
 
 def test_that_a_ready_sheet_is_reported_as_verified(ready: MainWindow, until: Until, tmp_path: Path) -> None:

@@ -109,6 +109,14 @@ def test_that_the_question_is_asked_once_and_its_answer_holds_for_new_projects(
     assert not question.isVisible()
 
 
+@pytest.mark.parametrize("machine", ["cricut-maker", "diode-10w"])
+def test_that_the_answer_is_repeated_by_its_name_in_the_list_with_the_width(begun: MainWindow, machine: str) -> None:
+    for key, material in cuttable(find_machine(machine)).items():
+        begun.presenters.welcome.choose(machine, key)
+        said = begun.status_text.text()
+        assert material.name in said and f"{material.sheet_mm:g} mm" in said, said
+
+
 def test_that_declining_is_an_answer_too(begun: MainWindow, qtbot: QtBot, tmp_path: Path) -> None:
     qtbot.mouseClick(begun.welcome.question.later, LEFT)
     assert preferences.load(tmp_path / "preferences.toml") == Preferences(machine_asked=True)

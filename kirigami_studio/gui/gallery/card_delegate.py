@@ -17,6 +17,7 @@ from kirigami_studio.gui.gallery.gallery_model import (
     FRESH_ROLE,
     GRID_ROLE,
     MARK_ROLE,
+    MATCH_ROLE,
     NAME_ROLE,
     NOTE_ROLE,
     RISE_ROLE,
@@ -97,7 +98,7 @@ class CardDelegate(Cards):
         else:
             self._paint_closing(painter, card, left, verdict)
         told_apart: str = index.data(START_ROLE) or index.data(GRID_ROLE)
-        self._paint_numbers(painter, card, candidate, index.data(VALUE_ROLE), told_apart)
+        self._paint_numbers(painter, card, index.data(MATCH_ROLE), index.data(VALUE_ROLE), told_apart)
         self._paint_level(painter, card, verdict)
 
     def _paint_closing(self, painter: QPainter, card: QRect, left: int, verdict: Verdict) -> None:
@@ -169,7 +170,7 @@ class CardDelegate(Cards):
             chip.adjusted(0, 0, -5, 0), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), text
         )
 
-    def _paint_numbers(self, painter: QPainter, card: QRect, candidate: Candidate, value: str, apart: str) -> None:
+    def _paint_numbers(self, painter: QPainter, card: QRect, match: float, value: str, apart: str) -> None:
         """Match and sort value; ``apart`` tells designs of several grids or starts apart."""
         text = _text_of(card)
         left, right = int(Qt.AlignmentFlag.AlignLeft), int(Qt.AlignmentFlag.AlignRight)
@@ -180,7 +181,7 @@ class CardDelegate(Cards):
         bold.setWeight(QFont.Weight.DemiBold)
         painter.setFont(bold)
         painter.setPen(QColor(self.palette_.text))
-        painter.drawText(text, left | top, f"{number(100 * candidate.match, '.1f')} %")
+        painter.drawText(text, left | top, f"{number(100 * match, '.1f')} %")
         painter.setFont(plain)
         painter.setPen(QColor(self.palette_.muted))
         metrics, line = painter.fontMetrics(), text.adjusted(0, 0, -22, 0)

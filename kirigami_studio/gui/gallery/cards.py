@@ -47,6 +47,7 @@ from kirigami_studio.gui.gallery.gallery_model import (
 )
 from kirigami_studio.gui.stage.piece_reader import PieceReader
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.layouts import TOUCH
 from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.outlines.outline import Outline
@@ -60,7 +61,7 @@ GAP = 8
 #: Pixels always reserved for the scroll bar, so that cards do not jump when it appears.
 SCROLL_BAR = 14
 #: Edge of the buttons under the mouse, pixels.
-BUTTON = 24
+BUTTON = TOUCH
 #: Edge of the dot on new designs, pixels.
 DOT = 7
 #: Opacity of a rejected design's picture.

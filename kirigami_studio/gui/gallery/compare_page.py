@@ -26,6 +26,7 @@ from kirigami_studio.gui.widgets.readable import UNKNOWN, readable_feature, read
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette, themed
 from kirigami_studio.gui.widgets.view_transform import Bounds
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.studio.two_states import shown_match
 
 if TYPE_CHECKING:
     from kirigami_studio.assembly.posed_pieces import PosedPieces
@@ -57,11 +58,11 @@ class ComparedDesign:
 
 #: What each row under a design is, in their order; "\N{ALMOST EQUAL TO}" stands before estimates.
 TIPS = {
-    "match": mark("Exact IoU with the target."),
+    "match": mark("Exact IoU with the target, of a trimmed design as trimmed."),
     "as_cut": mark("Whether the sheet comes to its angle as cut, or where it jams. \N{ALMOST EQUAL TO}: an estimate."),
     "strain": mark("Largest strain of a connector on the way there. \N{ALMOST EQUAL TO}: an estimate."),
     "time": mark("How long cutting takes; differences in seconds."),
-    "smallest": mark("Smallest panel edge or neck, mm."),
+    "smallest": mark("Smallest panel edge or neck."),
     "panels": mark("How much panel sizes vary (coefficient of variation)."),
     "gain": mark("Points of sIoU gained over a sheet of equal cuts."),
     "roughness": mark("Total variation (TV) of the ratios, lower is smoother."),
@@ -94,7 +95,11 @@ def figures_of(one: ComparedDesign) -> dict[str, ComparedFigure]:
     """Return the rows under a design by their names, in their order."""
     candidate, found = one.entry.candidate, one.as_cut
     score, even = candidate.score, candidate.final_sheet.has_even_rim
-    match, variation, gain = 100.0 * score.iou_exact, 100.0 * score.evenness.area_cv, 100.0 * score.siou_gain
+    match, variation, gain = (
+        100.0 * shown_match(candidate, found),
+        100.0 * score.evenness.area_cv,
+        100.0 * score.siou_gain,
+    )
     smallest = one.width_mm * least_panel_share(one.entry.design.deployment)
     time = UNKNOWN if one.seconds is None else readable_time(one.seconds)
     rows = {

@@ -36,6 +36,7 @@ from kirigami_studio.gui.gallery.gallery_model import (
     FEATURE_ROLE,
     FRESH_ROLE,
     MARK_ROLE,
+    MATCH_ROLE,
     NAME_ROLE,
     NOTE_ROLE,
     VERDICT_ROLE,
@@ -126,7 +127,7 @@ class TableCards(Cards):
         painter.setFont(bold)
         painter.setPen(QColor(self.palette_.text))
         middle = int(Qt.AlignmentFlag.AlignVCenter)
-        match = tr("{match:.1f} %", match=100.0 * candidate.match)
+        match = tr("{match:.1f} %", match=100.0 * index.data(MATCH_ROLE))
         painter.drawText(box, middle | int(Qt.AlignmentFlag.AlignRight), match)
         room = box.width() - painter.fontMetrics().horizontalAdvance(match) - 12
         signs = self._signs(index, candidate, mark)

@@ -42,7 +42,7 @@ class FilterControls(QObject):
         )
         name = tr("Minimum panel edge or neck in mm")
         self.feature = _number(f"{prefix}leastFeature", 1000.0, 2, 0.1, f"{least} ", " mm", name, LengthField)
-        self.feature.setToolTip(tr("Show only designs whose smallest panel edge or neck is at least this, in mm."))
+        self.feature.setToolTip(tr("Show only designs whose smallest panel edge or neck is at least this."))
         self.numbers = ((tr("match"), self.least), (tr("panels"), self.variation), (tr("smallest"), self.feature))
         #: Boxes and numbers by the fields of a selection; numbers are shown so many times as large.
         self._boxes = {
@@ -107,6 +107,7 @@ def order_box(name: str) -> QComboBox:
     box.setObjectName(name)
     box.setFocusPolicy(Qt.FocusPolicy.TabFocus)
     box.setAccessibleName(tr("Sort designs by"))
+    box.setAccessibleDescription(tr("Sort designs by"))  # a reader says the choice itself for the name of a box
     box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
     for order, text, tip in _orders():
         box.addItem(text, order)
@@ -134,7 +135,7 @@ def _orders() -> tuple[tuple[SortOrder, str, str], ...]:
         (
             SortOrder.PANEL,
             tr("By smallest feature"),
-            tr("The largest minimum panel edge or neck first, in mm at the sheet's width."),
+            tr("The largest minimum panel edge or neck first, at the sheet's width."),
         ),
         (SortOrder.NEWEST, tr("Newest first"), tr("Designs added by the last run first, marked with a dot.")),
         (

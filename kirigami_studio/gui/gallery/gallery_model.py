@@ -15,7 +15,13 @@ from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.fabricate.panel_sizes import least_panel_share
 from kirigami_studio.foundation.words import mark, tr, tr_n
-from kirigami_studio.gui.gallery.gallery_selection import GalleryItem, Selection, format_value, places_in_order
+from kirigami_studio.gui.gallery.gallery_selection import (
+    GalleryItem,
+    Selection,
+    SortOrder,
+    format_value,
+    places_in_order,
+)
 from kirigami_studio.gui.run.look_alikes import Stacks
 from kirigami_studio.gui.session.session import Entry, same_sample
 from kirigami_studio.gui.widgets.readable import readable_mm, readable_width
@@ -24,7 +30,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Mark
 from kirigami_studio.project.labels import Label
-from kirigami_studio.studio.two_states import TwoStates, start_of
+from kirigami_studio.studio.two_states import TwoStates, shown_match, start_of
 
 if TYPE_CHECKING:
     from kirigami_studio.fabricate.material import Material
@@ -46,6 +52,7 @@ GRID_ROLE = Qt.ItemDataRole.UserRole + 8  #: words for the grid where designs of
 START_ROLE = Qt.ItemDataRole.UserRole + 13  #: what it starts as where designs of several starts are there, else ""
 
 FEATURE_ROLE = Qt.ItemDataRole.UserRole + 17  #: its smallest panel edge or neck, mm
+MATCH_ROLE = Qt.ItemDataRole.UserRole + 18  #: 0..1; its match, of its pieces where they are known
 THIN_ROLE = Qt.ItemDataRole.UserRole + 16  #: whether panels are too thin for the material
 
 Index = QModelIndex | QPersistentModelIndex
@@ -109,9 +116,9 @@ class GalleryModel(QAbstractListModel):
         if role == Qt.ItemDataRole.ToolTipRole:
             return f"{self._described(entry)}\n{self._placed(entry)}"
         if role == Qt.ItemDataRole.AccessibleTextRole:
-            return self._described(entry)
+            return self._spoken(entry)
         if role == Qt.ItemDataRole.AccessibleDescriptionRole:
-            return self._placed(entry)
+            return f"{self._described(entry)}\n{self._placed(entry)}"
         known = self._facts.get(role)
         return None if known is None else known(entry)
 
@@ -126,6 +133,7 @@ class GalleryModel(QAbstractListModel):
             NAME_ROLE: lambda entry: self.name_of(entry.candidate),
             NOTE_ROLE: lambda entry: self.note_of(entry.candidate),
             MARK_ROLE: lambda entry: self.mark_of(entry.candidate),
+            MATCH_ROLE: lambda entry: self.match_of(entry.candidate),
             VERDICT_ROLE: lambda entry: self.verdict_of(entry.candidate),
             FEATURE_ROLE: lambda entry: entry.candidate.score.evenness.least_feature_mm(self._width_mm),
             THIN_ROLE: lambda entry: not self.ranking.wide_enough(entry.candidate),
@@ -146,8 +154,26 @@ class GalleryModel(QAbstractListModel):
             self._starts_differ = len({start_of(entry.candidate) for entry in self._all}) > 1
         return self._starts_differ
 
+    def _spoken(self, entry: Entry) -> str:
+        """Name, match and verdict: the card in one line, for screen readers."""
+        candidate = entry.candidate
+        words = [
+            tr(
+                "Design {name}: match {match:.1f} %, {verdict}",
+                name=self.name_of(candidate),
+                match=100 * self.match_of(candidate),
+                verdict=self.verdict_of(candidate).words,
+            )
+        ]
+        mark, alike = self.mark_of(candidate), self._stacks.under(candidate)
+        if mark is not Mark.NONE:
+            words.append(tr("Pinned") if mark is Mark.PINNED else tr("Rejected"))
+        if alike:
+            words.append(tr("+{count} alike", count=alike))
+        return ", ".join(words)
+
     def _described(self, entry: Entry) -> str:
-        lines = [described(entry.candidate, self.name_of(entry.candidate))]
+        lines = [described(entry.candidate, self.name_of(entry.candidate), self.as_cut_of(entry.candidate))]
         if entry.rise > 0:
             lines.append(tr("Polishing raised sIoU by {rise:.2f} points so far", rise=100 * entry.rise))
         mark = self.mark_of(entry.candidate)
@@ -189,7 +215,8 @@ class GalleryModel(QAbstractListModel):
         """What it starts as and what it opens into, how large, and how well it matches both."""
         if self._target is None:
             return ()
-        return TwoStates.of(entry.candidate, entry.design, self._target, self._width_mm).lines()
+        known = self.as_cut_of(entry.candidate)
+        return TwoStates.of(entry.candidate, entry.design, self._target, self._width_mm, known).lines()
 
     def set_target(self, target: Outline | None) -> None:
         """Set what the designs open into, for their tooltips."""
@@ -216,20 +243,25 @@ class GalleryModel(QAbstractListModel):
         material: Material | None = None,
         judged: Mapping[Candidate, Verdict] = MappingProxyType({}),
     ) -> None:
-        """Take estimates of designs as cut, their material, and the verdicts made of some."""
+        """Take what is known of designs as cut, their material, and the verdicts made of some."""
         self._as_cut, self._material, self._judged = known, material, judged
         self._show_verdicts()
 
     def _show_verdicts(self) -> None:
         self._expected.clear()
-        if self._selection.works_only:
+        selection = self._selection
+        if selection.works_only or selection.least_match > 0.0 or selection.order is SortOrder.MATCH:
             self._rearrange()
         elif self._shown:
             self.dataChanged.emit(self.index(0, 0), self.index(len(self._shown) - 1, 0))
 
     def as_cut_of(self, candidate: Candidate) -> AsCut | None:
-        """The estimate of a design as cut, as far as there is one."""
+        """Findings on a design as cut, estimated or made, as far as there are any."""
         return self._as_cut.get(candidate)
+
+    def match_of(self, candidate: Candidate) -> float:
+        """The match of a design, 0..1: of its pieces where they are known."""
+        return shown_match(candidate, self.as_cut_of(candidate))
 
     def set_ranking(self, ranking: Ranking) -> None:
         """Tell what can be cut, and why a design has its rank, by a ranking; the order stays."""
@@ -372,7 +404,8 @@ class GalleryModel(QAbstractListModel):
         mark, fresh = self.mark_of(entry.candidate), bool(self._fresh) and entry.candidate in self._fresh
         feature_mm = entry.candidate.score.evenness.least_feature_mm(self._width_mm)
         works = not self._selection.works_only or self.verdict_of(entry.candidate).level.value != "will_not_work"
-        return GalleryItem(place, entry.candidate, mark, entry.design.deployment, fresh, works, feature_mm)
+        match = self.match_of(entry.candidate)
+        return GalleryItem(place, entry.candidate, mark, entry.design.deployment, match, fresh, works, feature_mm)
 
     def _rearrange(self) -> None:
         after = self._arranged()
@@ -418,15 +451,17 @@ def _place_of(entries: list[Entry], candidate: Candidate | None) -> int:
     return next((place for place, entry in enumerate(entries) if entry.candidate == candidate), -1)
 
 
-def described(candidate: Candidate, name: str) -> str:
-    """Describe a candidate in words, for tooltips and screen readers."""
+def described(candidate: Candidate, name: str, as_cut: AsCut | None = None) -> str:
+    """Describe a candidate, with its findings as cut, for tooltips and screen readers."""
     score = candidate.score
+    values = {"name": name, "siou": 100 * score.siou, "iou_exact": 100 * score.iou_exact}
     lines = [
-        tr(
-            "Design {name}: match {iou_exact:.2f} % (exact IoU; sIoU {siou:.2f} %)",
-            name=name,
-            siou=100 * score.siou,
-            iou_exact=100 * score.iou_exact,
+        tr("Design {name}: match {iou_exact:.2f} % (exact IoU; sIoU {siou:.2f} %)", **values)
+        if as_cut is None or not as_cut.of_pieces
+        else tr(
+            "Design {name}: match {match:.2f} % (its pieces; lattice {iou_exact:.2f} %, sIoU {siou:.2f} %)",
+            match=100 * shown_match(candidate, as_cut),
+            **values,
         ),
         tr(
             "Evenness: panel sizes vary by {percent:.0f} % (coefficient of variation of their areas)",

@@ -26,6 +26,7 @@ from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.studio.as_cut import AsCut
 from kirigami_studio.studio.designing import limit_of
+from kirigami_studio.studio.two_states import shown_match
 
 
 class GalleryPresenter(QObject):
@@ -131,19 +132,30 @@ class GalleryPresenter(QObject):
         if self._running or not known:
             return
         ranking = self._ranking
-        jams = any(ranking.missed(candidate) > 0.0 for candidate in known)
-        if jams or self._ranked_as_cut:  # the document's order stays where all designs close
+        # The document's order stays where all designs close and show what they did in the run.
+        moves = any(ranking.missed(one) > 0.0 for one in known) or self._pieces_known
+        if moves or self._ranked_as_cut:
             self._view.rank_by(ranking)
             self._show_chosen()
-        self._ranked_as_cut = jams
+        self._ranked_as_cut = moves
+
+    @property
+    def _pieces_known(self) -> bool:
+        """Whether pieces of a design were put together: their match is shown, and ranked by."""
+        return any(
+            verdict.as_cut is not None and verdict.as_cut.of_pieces for verdict in self._estimates.verdicts.values()
+        )
 
     def _show_verdicts(self) -> None:
         """The cards have what is known of the designs as cut."""
         estimates = self._estimates
-        self._view.model_.set_as_cut(dict(estimates.known), estimates.material, estimates.verdicts)
+        self._view.model_.set_as_cut(estimates.found, estimates.material, estimates.verdicts)
 
     def _show_judged(self) -> None:
-        """A verdict was made: the cards have it at once; they change places with the next estimate."""
+        """Show a new verdict; cards of sheets change places with the next estimate."""
+        if self._pieces_known:
+            self._show_estimates(self._estimates.found)
+            return
         self._show_verdicts()
         if not self._running:
             self._view.model_.set_ranking(self._ranking)
@@ -155,12 +167,15 @@ class GalleryPresenter(QObject):
 
     def _estimated(self, ranking: Ranking) -> Ranking:
         """A ranking with all that is known as cut; a verdict overrules an estimate."""
-        found, verdicts = dict(self._estimates.known), self._estimates.verdicts
-        found |= {candidate: one.as_cut for candidate, one in verdicts.items() if one.as_cut is not None}
+        found, verdicts = self._estimates.found, self._estimates.verdicts
         jams = {candidate: one.jam_phi for candidate, one in found.items()}
         well = {candidate for candidate, one in verdicts.items() if one.ok}
         refusals = {candidate: why for candidate, why in ranking.refusals.items() if candidate not in well}
-        return replace(ranking, jam_phi={**ranking.jam_phi, **jams}, refusals=refusals)
+        pieces = {candidate: one for candidate, one in found.items() if one.of_pieces}
+        losses = {candidate: candidate.match - shown_match(candidate, one) for candidate, one in pieces.items()}
+        refusals |= {one: why for one in pieces if one in verdicts and (why := verdicts[one].refusal) is not None}
+        jam_phi, losses = {**ranking.jam_phi, **jams}, {**ranking.losses, **losses}
+        return replace(ranking, refusals=refusals, jam_phi=jam_phi, losses=losses)
 
     def show_document(self, document: Document) -> None:
         """The document has changed: marks, names and order of the cards."""

@@ -68,7 +68,7 @@ class Selection:
             and (item.works or not self.works_only)
             and (item.candidate.trim is None or not self.whole_only)
             and (mark is not Mark.REJECTED or self.show_rejected)
-            and item.candidate.match >= self.least_match
+            and item.match >= self.least_match
             and (not self.most_variation or score.evenness.area_cv <= self.most_variation)
             and item.feature_mm >= self.least_feature_mm
         )
@@ -78,14 +78,15 @@ class Selection:
 class GalleryItem:
     """One design of the gallery: its place in the document counts from 0; fresh are the last run's.
 
-    ``works`` is whether its verdict is not that it will not work, and ``feature_mm`` its smallest edge or neck, in
-    material and width chosen.
+    ``match`` (0..1) is the one that its card shows, ``works`` whether its verdict is not that it will not work, and
+    ``feature_mm`` its smallest edge or neck, in material and width chosen.
     """
 
     place: int
     candidate: Candidate
     mark: Mark
     deployment: Deployment = field(repr=False)
+    match: float
     fresh: bool = False
     works: bool = True
     feature_mm: float = math.inf
@@ -106,7 +107,7 @@ def sorting_values(designs: Sequence[GalleryItem], selection: Selection) -> list
     """By what each design is sorted; smaller comes first."""
     order = selection.order
     if order is SortOrder.MATCH:
-        return [-one.candidate.match for one in designs]
+        return [-one.match for one in designs]
     if order is SortOrder.EVENNESS:
         return [one.candidate.score.evenness.area_cv for one in designs]
     if order is SortOrder.GAIN:

@@ -281,7 +281,7 @@ class CutBar(QWidget):
         self.count, self.so_far = QLabel(), QLabel()
         for label, name in ((self.count, tr("Cuts so far")), (self.so_far, tr("Time and cut length so far"))):
             label.setObjectName("muted")
-            label.setAccessibleName(name)
+            label.setAccessibleDescription(name)
             label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)

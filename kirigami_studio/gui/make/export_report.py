@@ -21,10 +21,10 @@ from PySide6.QtWidgets import (
 )
 
 from kirigami_studio.fabricate.findings import Severity
-from kirigami_studio.foundation.words import mark, tr, tr_n
+from kirigami_studio.foundation.words import ShownUnit, mark, tr, tr_n
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import ElidedLabel
-from kirigami_studio.gui.widgets.readable import UNKNOWN, ShownUnit, readable_box, readable_length, readable_range
+from kirigami_studio.gui.widgets.readable import UNKNOWN, readable_box, readable_length, readable_range
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ class ExportReport(QDialog):
             caption = QLabel(tr(name))
             caption.setObjectName("muted")
             label.setObjectName("number")
-            label.setAccessibleName(tr(name))
+            caption.setBuddy(label)
             table.addWidget(caption, 0, column)
             table.addWidget(label, 1, column)
             table.setColumnStretch(column, 3 if column == 0 else 2)
@@ -162,6 +162,7 @@ class ExportReport(QDialog):
         palette = self._palette
         tints = {"check": palette.good, "warning": palette.warning, "fault": palette.bad}
         symbol = symbol_of(self.shown, self.judged)
+        self.symbol.setAccessibleName(self.verdict.text())
         self.symbol.setPixmap(icons.pixmap(symbol, tints[symbol], ICON_EDGE, self.devicePixelRatioF()))
         self.verdict.setStyleSheet(f"color: {tints[symbol]}; font-weight: 600; font-size: 12pt;")
         for row in range(self.findings.count()):

@@ -6,7 +6,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QWidget
+from PySide6.QtWidgets import QGridLayout, QSizePolicy, QWidget
 
 from kirigami_studio.fabricate.machine import USUAL, MachineKind
 from kirigami_studio.fabricate.material import PRINTER
@@ -18,6 +18,7 @@ from kirigami_studio.gui.make.more_options import MoreOptions
 from kirigami_studio.gui.make.verdict import VerdictState
 from kirigami_studio.gui.widgets.card import (
     Card,
+    ElidedLabel,
     ScrolledWhenShort,
     ToolButton,
     muted_label,
@@ -88,7 +89,9 @@ class FabricationPanel(Card):
         self.form.edited.connect(self.edited)
         self.construction = self.form.choice("construction")
         self.lengths = {name: self.form.decimal(name) for name in LENGTHS}
-        self.numbers = {key: QLabel(UNKNOWN) for key, _ in NUMBERS}
+        self.numbers = {key: ElidedLabel(Qt.TextElideMode.ElideRight) for key, _ in NUMBERS}
+        for shown in self.numbers.values():
+            shown.setText(UNKNOWN)
         self.warnings = muted_label()
         self.warnings.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.warnings.setMinimumHeight(3 * self.warnings.fontMetrics().lineSpacing() + 2)
@@ -157,9 +160,8 @@ class FabricationPanel(Card):
         table.setVerticalSpacing(1)
         for place, (key, words) in enumerate(NUMBERS):
             line, across = divmod(place, 3)
-            caption = label(tr(words))
+            caption = label(tr(words), self.numbers[key])
             self.numbers[key].setObjectName("number")
-            self.numbers[key].setAccessibleName(tr(words))
             table.addWidget(caption, 3 * line, across)
             table.addWidget(self.numbers[key], 3 * line + 1, across)
             for part in (caption, self.numbers[key]):
@@ -245,7 +247,6 @@ class FabricationPanel(Card):
         }
         for key, text in texts.items():
             self.numbers[key].setText(text)
-            self.numbers[key].setToolTip("")
         self.options.rows.setText("")
         self._show_trim(0.0)
 

@@ -109,7 +109,7 @@ class FabricationPresenter(QObject):
         """Lengths are shown in another unit."""
         if self._planner.made is not None:
             self._show_plan(self._planner.made)
-            self._panel.show_verdict(self._keeper.state)
+        self._keeper.changed.emit(self._keeper.state)
 
     def _show_plan(self, made: Planned | MadePieces | None) -> None:
         if made is None or isinstance(made, Planned):

@@ -20,7 +20,7 @@ from kirigami_studio.settings.fabrication import (
 from kirigami_studio.settings.layers import note_on
 
 #: In the place of a machine: the one that the material is for.
-USUAL = mark("Usual for the material")
+USUAL = mark("The usual one")
 
 
 class MachineChooser(QObject):

@@ -91,6 +91,7 @@ class CuttingQuestion(QFrame):
         item = QListWidgetItem(text, self.list)
         item.setData(Qt.ItemDataRole.UserRole, key)
         item.setToolTip(tip)
+        item.setData(Qt.ItemDataRole.AccessibleDescriptionRole, tip)
         return item
 
     def _take(self, item: QListWidgetItem) -> None:

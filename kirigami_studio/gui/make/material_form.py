@@ -17,7 +17,7 @@ from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.foundation.settings import NamedSetting
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.form import Form, spoken
-from kirigami_studio.gui.widgets.number_field import DecimalField
+from kirigami_studio.gui.widgets.number_field import DecimalField, LengthField, names_length
 
 #: Texts and numbers of a material, in the order of the form.
 TEXTS = ("name", "machine", "note")
@@ -89,6 +89,8 @@ class ValueForm(QWidget):
         unit = one.setting.unit
         box = self.fields.decimal(name, f" {unit}")
         box.setAccessibleName(f"{spoken(one)}, {unit}")
+        if isinstance(box, LengthField):
+            names_length(box)
         about = tr(one.setting.about)
         box.setToolTip(tr("{tip} Unit: {unit}, {low:g} to {high:g}.", tip=about, unit=unit, **one.numbers))
         return box

@@ -39,7 +39,7 @@ class MoreOptions(QWidget):
         self.rows = ElidedLabel()
         self.rows.setObjectName("muted")
         self.rows.setFixedHeight(self.copies.sizeHint().height())  # beside the numbers, not beside their captions
-        self.rows.setAccessibleName(tr("Rows of copies"))
+        self.rows.setAccessibleDescription(tr("Rows of copies"))
         for box in (self.style_, self.order, self.dxf_version):  # as wide as their columns, whatever their words
             box.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self._lay_out()

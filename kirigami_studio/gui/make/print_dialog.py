@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QMarginsF, QPointF, QSizeF, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QPageLayout, QPageSize, QPainter, QPen, QPolygonF
 from PySide6.QtPrintSupport import QPrintDialog, QPrinter, QPrinterInfo, QPrintPreviewWidget
-from PySide6.QtWidgets import QDialog, QSizePolicy, QWidget
+from PySide6.QtWidgets import QAbstractScrollArea, QDialog, QSizePolicy, QWidget
 
 from kirigami_studio.export.paper import OVERLAP_MM, Paper
 from kirigami_studio.foundation.units import MM_PER_INCH
@@ -127,7 +127,9 @@ class PrintDialog(QDialog):
         self.paper.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.printer = QPrinter(QPrinter.PrinterMode.HighResolution)
         self.preview = QPrintPreviewWidget(self.printer)
-        self.preview.setAccessibleName(tr("Pages as they are printed"))
+        areas = self.preview.findChildren(QAbstractScrollArea)
+        for part in (self.preview, *areas, *(area.viewport() for area in areas)):
+            part.setAccessibleName(tr("Pages as they are printed"))
         self.preview.setMinimumSize(LEAST_PREVIEW, LEAST_PREVIEW)
         self.preview.paintRequested.connect(self._paint)
         self.about, self.printers = label(wraps=True), label(wraps=True)
@@ -159,6 +161,9 @@ class PrintDialog(QDialog):
                 else tr("Pieces on pins lie on several sheets: Export writes them with assembly.pdf, at true size.")
             )
             return
+        if self.pages is None:
+            self._show(None)
+            self.about.setText(tr("Laying out the pages …"))
         callbacks: JobCallbacks[PrintedPages] = JobCallbacks(
             self._show, on_failed=lambda sentence, _: self._refuse(sentence)
         )

@@ -120,6 +120,7 @@ class ShelfEditor(QDialog, Generic[Item]):
         scrolled = QScrollArea()
         scrolled.setWidgetResizable(True)
         scrolled.setFrameShape(QScrollArea.Shape.NoFrame)
+        scrolled.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # its fields have the keyboard, and bring it along
         scrolled.setWidget(self.form)
         left, right, pair, saving = QVBoxLayout(), QVBoxLayout(), QHBoxLayout(), QHBoxLayout()
         left.addWidget(self.list, 1)

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QMenu, Q
 from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.make.verdict import VerdictState
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.announcing import announce
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.verdict_marks import ICONS, colour_of, level_of
 
@@ -38,6 +39,7 @@ class VerdictBar(QFrame):
         self._palette: Palette = LIGHT
         self._state = VerdictState()
         self._low = False
+        self.setAccessibleName(tr("Verdict on the sheet as cut"))
         self.icon = QLabel()
         self.icon.setFixedSize(ICON_EDGE, ICON_EDGE)
         self.headline = QLabel()
@@ -49,7 +51,6 @@ class VerdictBar(QFrame):
         self.sentence.setWordWrap(True)
         self.sentence.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
         self.sentence.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self.sentence.setAccessibleName(tr("Verdict on the sheet as cut"))
         self.more = QPushButton(tr("More fixes"))
         self.more.setObjectName("small")
         self.more.setToolTip(tr("More changes that were tried on this design and help."))
@@ -87,7 +88,11 @@ class VerdictBar(QFrame):
 
     def _show_words(self) -> None:
         state, verdict = self._state, self._state.verdict
-        self.headline.setText(headline(state))
+        said = headline(state)
+        if said != self.headline.text() and not state.pending:
+            announce(self, said)
+        self.headline.setText(said)
+        self.icon.setAccessibleName(said)
         self.setToolTip("\n".join(state.lines))
         self._fit_sentence()
         self.setAccessibleDescription("\n".join(state.lines))
@@ -101,8 +106,11 @@ class VerdictBar(QFrame):
 
     def _fit_sentence(self) -> None:
         """Show the worst problem, or the first note, in one line of a wide or low banner or two of a narrow one."""
-        said, metrics, width = self._state.lines[1:2], self.sentence.fontMetrics(), max(self.width() - 16, 1)
+        margins = self._grid.contentsMargins()
+        width = max(self.width() - margins.left() - margins.right() - 2 * self.frameWidth() - 2, 1)
+        said, metrics = self._state.lines[1:2], self.sentence.fontMetrics()
         lines = 1 if width >= WIDE or self._low else 2
+        self.sentence.setWordWrap(lines > 1)
         # What is left of a line when words wrap is lost.
         room = width if lines == 1 else round(LINE_USED * lines * width)
         self.sentence.setText(metrics.elidedText(said[0], Qt.TextElideMode.ElideRight, room) if said else "")

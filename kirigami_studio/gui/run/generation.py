@@ -293,7 +293,7 @@ class RunPlanner:
                 "Generated {count} designs in {seconds:.1f} s. Best: match {match:.1f} %, panels ±{variation:.0f} %.",
                 len(result.candidates),
                 seconds=result.seconds,
-                match=100 * score.iou_exact,
+                match=100 * result.ranking.made_match(result.best),
                 variation=100 * score.evenness.area_cv,
             )
             return f"{told} {grid_reason}".strip()
@@ -311,13 +311,13 @@ class RunPlanner:
                 "{count} designs added, {repeats} already in the gallery. Best new match: {match:.1f} %.",
                 added,
                 repeats=result.repeats,
-                match=100 * result.best.score.iou_exact,
+                match=100 * result.ranking.made_match(result.best),
             )
         return tr_n(
             "{count} design added. Best new match: {match:.1f} %.",
             "{count} designs added. Best new match: {match:.1f} %.",
             added,
-            match=100 * result.best.score.iou_exact,
+            match=100 * result.ranking.made_match(result.best),
         )
 
     def _nearly_the_same(self, before: Document, fresh: Sequence[Candidate]) -> str:

@@ -16,7 +16,6 @@ from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import fitted
 from kirigami_studio.gui.widgets.layouts import TOUCH
 from kirigami_studio.gui.widgets.paths import blank, ink, painter_on
-from kirigami_studio.gui.widgets.readable import ShownUnit, readable_size
 from kirigami_studio.gui.widgets.target_items import paint_start_shape
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -132,8 +131,6 @@ class StartTile(QAbstractButton):
         return self._size(round(self._width_mm), round(self._height_mm))
 
     def _size(self, width_mm: float, height_mm: float) -> str:
-        if ShownUnit.inches:
-            return readable_size(width_mm, height_mm)
         return size_words(width_mm, height_mm)
 
     @property

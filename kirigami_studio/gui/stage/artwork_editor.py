@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QPoint, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QComboBox, QFormLayout, QPushButton, QWidget
 
 from kirigami_studio.export.artwork import (
@@ -121,6 +122,13 @@ class ArtworkEditor(QWidget):
             field.valueChanged.connect(self._shift)
         for field in self._numbers:
             field.editingFinished.connect(self.edited)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802 - Qt's name
+        """Esc closes the window."""
+        if event.key() == Qt.Key.Key_Escape:
+            self.close()
+        else:
+            super().keyPressEvent(event)
 
     def _shift(self) -> None:
         self.changed.emit({"shift": (self.right.value() / 100.0, self.up.value() / 100.0)})

@@ -159,8 +159,22 @@ class AsCutEstimates(QObject):
             if settings == one_sheet(cut_for(document, candidate))
         }
 
+    @property
+    def found(self) -> dict[Candidate, AsCut]:
+        """Findings on designs as they are cut now; verdicts that were made overrule estimates."""
+        made = {candidate: one.as_cut for candidate, one in self.verdicts.items() if one.as_cut is not None}
+        return {**self.known, **made}
+
+    def as_cut_of(self, candidate: Candidate) -> AsCut | None:
+        """Findings on one design as it is cut now."""
+        settings, verdict = self._verdicts.get(candidate, (None, None))
+        made = None if verdict is None else verdict.as_cut
+        if made is not None and settings == one_sheet(cut_for(self._session.document, candidate)):
+            return made
+        return self.known.get(candidate)
+
     def take_verdict(self, request: CutRequest, verdict: Verdict) -> None:
-        """The design on the stage was judged: from now on that is shown everywhere."""
+        """A design was judged, on the stage or for its card: from now on that is shown everywhere."""
         self._verdicts[request.candidate] = one_sheet(request.settings), verdict
         self.judged.emit()
 

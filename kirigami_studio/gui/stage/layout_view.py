@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -63,7 +64,8 @@ from kirigami_studio.gui.widgets.mismatch_items import (
     Mismatch,
     design_mismatch,
     difference_chips,
-    mismatch_of_nodes,
+    mismatch_of_area,
+    mismatch_of_pieces,
     paint_mismatch,
     usual_chips,
 )
@@ -169,6 +171,9 @@ class LayoutView(Canvas):
         self.overstretched = 0  #: connectors of the last painted picture stretched by more than they tolerate
         self.areas: Mismatch | None = None  #: missing and extra area of the last painted picture
         self._ideal_areas: tuple[float, Mismatch] | None = None  #: angle, and areas of the ideal motion there
+        #: the same of a sheet as cut, and of pieces
+        self._made_areas: tuple[tuple[object, float], Mismatch] | None = None
+        self._cut_mm = 0.0  #: millimetres of one world unit as the sheet as cut lies there; 0 for the ideal motion
         self.faults: tuple[Fault, ...] = ()  #: marked places of the last painted picture
         self._hint = ("generate", tr("No design yet"), tr("Choose a target on the left, then press Generate (Ctrl+G)."))
         self.caption = ""  #: text of the upper left corner
@@ -190,7 +195,7 @@ class LayoutView(Canvas):
         ``second`` is how this very sheet shows a second target.
         """
         self.design, self._target, self._cut, self.second = design, target, None, None
-        self.areas, self._ideal_areas, self.faults = None, None, ()
+        self.areas, self._ideal_areas, self._made_areas, self._cut_mm, self.faults = None, None, None, 0.0, ()
         self._pieces = self._tiles = None
         before, self._bounds = self._bounds, None
         if design is not None:
@@ -215,7 +220,8 @@ class LayoutView(Canvas):
         """Show a design that is being edited by hand, without fitting the view again."""
         self.design, self._cut, self.second = design, None, None
         self._pieces = self._tiles = None
-        self.areas, self._ideal_areas, self.faults, self._contact = None, None, (), None
+        self.areas, self._ideal_areas, self._made_areas, self._cut_mm = None, None, None, 0.0
+        self.faults, self._contact = (), None
         self._rigid = RigidFacts.of(design)
         self.update()
 
@@ -301,7 +307,7 @@ class LayoutView(Canvas):
         """Millimetres of one world unit; 0 while there is no design."""
         if self._pieces is not None:
             return self._pieces.mm_per_world
-        return 0.0 if self.design is None else self.design.mm_per_world(self._width_mm)
+        return 0.0 if self.design is None else self._cut_mm or self.design.mm_per_world(self._width_mm)
 
     def find_faults(self) -> tuple[Fault, ...]:
         """All faults of the design at the angle that is shown, whether they are marked or not."""
@@ -406,6 +412,7 @@ class LayoutView(Canvas):
             self._paint_pieces(painter, transform, self._pieces)
             return
         pose = self.shown_as_cut
+        self._cut_mm = 0.0 if pose is None else pose.mm_per_world
         nodes = self.design.nodes(self.phi) if pose is None else pose.nodes
         field = self.design.deployment.field
         panels = transform.to_pixels(self.design.panels(nodes))
@@ -445,7 +452,12 @@ class LayoutView(Canvas):
             held, pulled = pieces.grips
             places = grip_places(pieces.design, (held,), (pulled,), self.phi, pieces.design.phi_target)
             paint_grips(painter, places, transform, self.palette_)
-        nearness = self._nearness
+        nearness, target = self._nearness, self._target
+        if target is not None and Overlay.MISMATCH in self.overlays and nearness > 0.0 and pieces.head_mm:
+            self.areas = self._compared((pieces, self.phi), lambda: mismatch_of_pieces(target.rings, pieces, self.phi))
+            painter.setOpacity(min(1.0, 2.0 * nearness))
+            paint_mismatch(painter, self.areas, transform, self.palette_)
+            painter.setOpacity(1.0)
         if self._target is not None and Overlay.TARGET in self.overlays:
             painter.setOpacity(min(1.0, max(FAINT, 2.0 * nearness)))
             paint_target_line(painter, transform.rings_to_pixels(self._target.rings), self.palette_)
@@ -597,7 +609,7 @@ class LayoutView(Canvas):
             if pose is None:
                 self.areas = self.compare_ideal()
             else:
-                self.areas = mismatch_of_nodes(self.design, self._target, pose.phi, pose.nodes)
+                self.areas = self._compare_cut(self._target)
             if self.areas is not None:
                 painter.setOpacity(min(1.0, 2.0 * nearness))
                 paint_mismatch(painter, self.areas, transform, self.palette_)
@@ -607,6 +619,21 @@ class LayoutView(Canvas):
             paint_target_line(painter, transform.rings_to_pixels(self._target.rings), self.palette_)
             painter.setOpacity(1.0)
             self._paint_second(painter, transform)
+
+    def _compare_cut(self, target: Outline) -> Mismatch | None:
+        """Find the areas of the sheet as cut, in the pose of its match."""
+        sheet, made = self._cut, self._made
+        if sheet is None or made is None:
+            return None
+        return self._compared(
+            (sheet, self.phi), lambda: mismatch_of_area(target.rings, sheet.motion.area(made[1], self.phi))
+        )
+
+    def _compared(self, key: tuple[object, float], compare: Callable[[], Mismatch]) -> Mismatch:
+        """The areas of a made design at an angle, found once."""
+        if self._made_areas is None or self._made_areas[0] != key:
+            self._made_areas = key, compare()
+        return self._made_areas[1]
 
     def _paint_second(self, painter: QPainter, transform: ViewTransform) -> None:
         """The second target near its angle."""

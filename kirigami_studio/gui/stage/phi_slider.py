@@ -49,7 +49,6 @@ class PhiSlider(QSlider):
         self.setMinimumHeight(44)
         self.setMouseTracking(True)
         self.setObjectName("phiSlider")
-        self.setAccessibleName(tr("Deployment angle"))
         self._update_tooltip()
         self.valueChanged.connect(lambda value: self.phi_changed.emit(self.phi))
         self.valueChanged.connect(lambda _: self._describe_value())
@@ -184,7 +183,9 @@ class PhiSlider(QSlider):
 
     def _describe_value(self) -> None:
         """A screen reader would say the slider's whole number, which means nothing to anybody."""
-        self.setAccessibleDescription(tr("{angle:.1f}°", angle=math.degrees(self.phi)))
+        angle = tr("{angle:.1f}°", angle=math.degrees(self.phi))
+        self.setAccessibleName(tr("Deployment angle: {angle}", angle=angle))
+        self.setAccessibleDescription(angle)
 
     def _go(self, x: float) -> None:
         self.setValue(self.stopped(round(LAST * (x - SIDE) / max(self.width() - 2 * SIDE, 1.0))))

@@ -18,7 +18,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import cut_for
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.designing import one_sheet
-from kirigami_studio.studio.making import CutRequest, MadePieces, Planned, has_pieces, picturing
+from kirigami_studio.studio.making import CutRequest, MadePieces, PicturedPieces, Planned, has_pieces, picturing
 
 if TYPE_CHECKING:
     from kirigami_studio.assembly.posed_pieces import PosedPieces
@@ -41,11 +41,12 @@ class PieceReader(QObject):
     """
 
     changed = Signal()  #: pieces are there that were not, or those that were shown no longer hold
+    judged = Signal(CutRequest, object)  #: the Verdict on pieces that were made
 
     def __init__(self, session: Session, running: Callable[[], bool], parent: QObject) -> None:
         super().__init__(parent)
         self._session, self._running = session, running
-        self._job = LatestJob["tuple[CutRequest, PosedPieces | None]"](session.queue)
+        self._job = LatestJob[PicturedPieces](session.queue)
         # How they are cut; None where artwork has changed since.
         self._known: dict[Candidate, tuple[FabricationSettings | None, PosedPieces | None]] = {}
         self._target: Outline | None = None
@@ -141,9 +142,11 @@ class PieceReader(QObject):
         self._in_work = {}
         self._begin()
 
-    def _on_result(self, report: tuple[CutRequest, PosedPieces | None]) -> None:
-        request, pieces = report
+    def _on_result(self, report: PicturedPieces) -> None:
+        request, verdict = report.request, report.verdict
         if request.target == self._target:
             current = request.artwork == self._artwork
-            self._known[request.candidate] = request.settings if current else None, pieces
+            self._known[request.candidate] = request.settings if current else None, report.pieces
             self.changed.emit()
+            if verdict is not None:
+                self.judged.emit(request, verdict)

@@ -12,7 +12,7 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QButtonGroup, QSizePolicy, QToolButton, QWidget
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import ShownUnit, tr
 from kirigami_studio.gui.stage.curves import ANGLES, Curves
 from kirigami_studio.gui.widgets.layouts import column, label, plain_pane, row
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
@@ -50,17 +50,17 @@ def _rows() -> tuple[_Row, ...]:
             ("sIoU", lambda reading, mm: 100.0 * reading.siou),
             (tr("exact IoU"), lambda reading, mm: 100.0 * reading.iou),
         )),
-        _Row(tr("Area"), tr("Area inside the sheet's outline, voids included, mm²"), "mm²", (
+        _Row(tr("Area"), tr("Area inside the sheet's outline, voids included"), "mm²", (
             (tr("area"), lambda reading, mm: reading.area * mm * mm),
         )),
         _Row(tr("Porosity"), tr("Share of the area inside the sheet's outline that is voids, %"), "%", (
             (tr("porosity"), lambda reading, mm: 100.0 * reading.porosity),
         ), True),
-        _Row(tr("Size"), tr("Width and height of the sheet as shown, mm"), "mm", (
+        _Row(tr("Size"), tr("Width and height of the sheet as shown"), "mm", (
             (tr("width"), lambda reading, mm: reading.width * mm),
             (tr("height"), lambda reading, mm: reading.height * mm),
         )),
-        _Row(tr("Gap"), tr("Narrowest gap between parts of the outline, mm; 0 means contact"), "mm", (
+        _Row(tr("Gap"), tr("Narrowest gap between parts of the outline; 0 means contact"), "mm", (
             (tr("gap"), lambda reading, mm: reading.gap * mm),
         ), True),
         _Row(tr("Force"), force, "N", (
@@ -255,6 +255,10 @@ class PlotsPanel(QWidget):
             chart.setVisible(there and (everything or number == self.buttons.checkedId()))
             chart.show_angles(not everything or number == last)
 
+    def show_unit(self) -> None:
+        """Draw lengths in another unit."""
+        self._draw()
+
     def _draw(self) -> None:
         if self._curves is not None and self._built:
             for number, shown in enumerate(self._rows):
@@ -269,7 +273,10 @@ class PlotsPanel(QWidget):
             return
         readings, mm = self._curves.readings, self._curves.cell_share * self._width_mm
         degrees = np.degrees([reading.phi for reading in readings])
-        values = [np.array([take(reading, mm) for reading in readings]) for _, take in self._rows[number].series]
+        row = self._rows[number]
+        unit = ShownUnit.mm() ** {"mm": 1, "mm²": 2}.get(row.unit, 0)
+        values = [np.array([take(reading, mm) / unit for reading in readings]) for _, take in row.series]
+        self._made[number].set_unit(ShownUnit.words(row.unit))
         self._made[number].set_series(Series(degrees, tuple(values)))
 
     def _point(self, phi: float) -> None:

@@ -140,7 +140,7 @@ class AsCutLine(ElidedLabel):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("asCut")
-        self.setAccessibleName(tr("As cut"))
+        self.setAccessibleDescription(tr("As cut"))
         self.setFixedHeight(self.fontMetrics().height() + 2)
 
     def show_state(self, state: AsCutState) -> None:
@@ -153,7 +153,6 @@ class AsCutLine(ElidedLabel):
             self.setText(tr("Closing the sheet as cut …"))
         else:
             self.setText(state.problem)
-        self.setAccessibleDescription(self.text())
 
 
 def texts(found: AsCut) -> tuple[str, ...]:

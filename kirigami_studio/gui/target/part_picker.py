@@ -68,7 +68,7 @@ HULLS = (Join.HULL, Join.TIGHT)
 KINDS = {
     DrawnPartKind.FILLED: mark("filled"),
     DrawnPartKind.CLOSED: mark("closed line"),
-    DrawnPartKind.STROKED: mark("open line"),
+    DrawnPartKind.STROKED: mark("line"),
 }
 
 

@@ -170,13 +170,13 @@ class PartView(QWidget):
             self.clicked.emit(number)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802 - Qt's name
-        """Choose or leave out the part that was clicked on; elsewhere on a picture take the object."""
+        """Take the object of a picture that was clicked on, or a part of it that is not chosen yet."""
         places, self._stroke_places = self._stroke_places, []
         if not places or self._read is None or self._read.photo is None:
             return
         number = self._part_below(places[0])
         is_click = all((place - places[0]).manhattanLength() < LEAST_STROKE for place in places)
-        if is_click and number and self._takes:
+        if is_click and number and self._takes and number not in self._chosen:
             self.clicked.emit(number)
         else:
             self.stroked.emit(self._on_photo(places[:1] if is_click else places, self._read.photo), self._takes)

@@ -50,8 +50,7 @@ class PoseTool(SketchTool):
     def __init__(self, context: SketchContext) -> None:
         super().__init__(context)
         self.hint = mark(
-            "Click a shape to select it (Shift: several, or drag a box). Drag it to move, a square to stretch (Shift: "
-            "proportional), the knob to rotate (Shift: 15° steps). Arrow keys nudge, Delete removes."
+            "Click to select (Shift: several). Drag to move, a square to stretch, the knob to turn (Shift: 15° steps)."
         )
         self._start: PointerEvent | None = None
         self._grip: tuple[int, int] | None = None

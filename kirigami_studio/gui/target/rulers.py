@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QColor, QPainter, QPen
 
-from kirigami_studio.foundation.words import number, tr
+from kirigami_studio.foundation.words import ShownUnit, number, tr
 from kirigami_studio.gui.target.sketch_context import SketchContext
 from kirigami_studio.gui.widgets.paths import ink
-from kirigami_studio.gui.widgets.readable import ShownUnit, round_step
+from kirigami_studio.gui.widgets.readable import round_step
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
 

@@ -43,6 +43,8 @@ SMALLEST_STEP = 2.0
 CLOSING_SHARE = 0.01
 #: A box smaller than this (pixels) was a click, not a drag.
 LEAST_DRAG = 4.0
+#: Half of the side (mm) of the box whose middle half Enter fills on an empty board.
+EMPTY_MM = 60.0
 #: With Shift the pen goes in these steps, radians.
 PEN_STEP = math.radians(45.0)
 #: Size in which letters are outlined, pixels: flattened curves are then exact to a thousandth.
@@ -277,8 +279,26 @@ class BoxTool(SketchTool):
         start = self._start
         self.drop()
         if start is not None and distance(start.pixel, pointer.pixel) >= LEAST_DRAG:
-            box = BoundingBox.spanned(start.place, pointer.place, pointer.shift)
-            self.context.draw(lambda: self._shape(box), self._name)
+            self._fill(BoundingBox.spanned(start.place, pointer.place, pointer.shift))
+
+    def key(self, event: QKeyEvent) -> bool:
+        if event.key() not in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            return False
+        self.lay()
+        return True
+
+    def lay(self) -> None:
+        """Lay the shape in the middle of the target, half as large; arrows move it from there."""
+        placed = self.context.placed
+        low, high = (np.full(2, side) for side in (-EMPTY_MM, EMPTY_MM))
+        if placed is not None:
+            low, high = placed.ring.min(axis=0), placed.ring.max(axis=0)
+        (left, bottom), (right, top) = (0.75 * low + 0.25 * high).tolist(), (0.25 * low + 0.75 * high).tolist()
+        self.drop()
+        self._fill(BoundingBox(left, bottom, right, top))
+
+    def _fill(self, box: BoundingBox) -> None:
+        self.context.draw(lambda: self._shape(box), self._name)
 
     @property
     def busy(self) -> bool:
@@ -302,7 +322,7 @@ class BoxTool(SketchTool):
 
 def figure_tool(context: SketchContext, kind: Figure) -> BoxTool:
     """Return the tool for a rectangle, ellipse, regular polygon or star."""
-    hint = mark("Drag a box for the shape. Shift keeps it regular, Ctrl ignores the grid.")
+    hint = mark("Drag a box for the shape, or press Enter. Shift keeps it regular, Ctrl ignores the grid.")
     return BoxTool(context, kind.value, lambda box: placed_figure(kind, box, context.corners, context.waist), hint)
 
 
@@ -314,7 +334,9 @@ def text_tool(context: SketchContext) -> BoxTool:
         word, notes = lettered(letters(text, context.family, context.bold, context.italic), box)
         return Placed.from_polygon(word, text or TEXT, notes)
 
-    hint = mark("Type the text above, then drag a box for it. Letters are moved together into one piece.")
+    hint = mark(
+        "Type the text above, then drag a box for it or press Enter. Letters are moved together into one piece."
+    )
     return BoxTool(context, TEXT, shape, hint)
 
 

@@ -46,6 +46,7 @@ class SilhouettePicker(QFrame):
             item = QListWidgetItem(QIcon(picture), tr(entry.title))
             item.setData(NAME_ROLE, name)
             item.setToolTip(tr(entry.about))
+            item.setData(Qt.ItemDataRole.AccessibleDescriptionRole, tr(entry.about))
             self.list.addItem(item)
 
     def show_below(self, button: QWidget) -> None:

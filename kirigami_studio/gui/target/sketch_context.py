@@ -11,9 +11,9 @@ from PySide6.QtCore import QObject, QPointF, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QPainter
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.words import mark, tr
+from kirigami_studio.foundation.words import ShownUnit, mark, tr
 from kirigami_studio.gui.target.arrangements import EVERY
-from kirigami_studio.gui.widgets.readable import ShownUnit, round_step
+from kirigami_studio.gui.widgets.readable import round_step
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.outlines.combining import Combine

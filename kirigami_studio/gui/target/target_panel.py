@@ -17,7 +17,7 @@ from kirigami_studio.gui.target.target_view import TargetView, Tool
 from kirigami_studio.gui.widgets.card import Card, ElidedLabel, ToolButton, compact
 from kirigami_studio.gui.widgets.layouts import TOUCH, Part, label, push_button, row, slider
 from kirigami_studio.gui.widgets.number_field import LengthField, decimal_field, names_length
-from kirigami_studio.gui.widgets.readable import TIMES, readable_size
+from kirigami_studio.gui.widgets.readable import TIMES, UNKNOWN, readable_size
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 from kirigami_studio.outlines.reach import reach_of, reach_texts
@@ -142,10 +142,10 @@ class TargetPanel(Card):
         self.facts, self.size_ = ElidedLabel(), label()
         self.notes = label(name="warning", wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.reach, self.start_refusal, self.limit = ElidedLabel(), ElidedLabel(), ElidedLabel()
-        self.reach.setAccessibleName(tr("Details that the grid may miss"))
-        self.start_refusal.setAccessibleName(tr("Why the next run would refuse the start"))
-        self.limit.setAccessibleName(tr("What no closed sheet shows of the target"))
+        self.reach, self.start_refusal, self.limit = (ElidedLabel(Qt.TextElideMode.ElideRight) for _ in range(3))
+        self.reach.setAccessibleDescription(tr("Details that the grid may miss"))
+        self.start_refusal.setAccessibleDescription(tr("Why the next run would refuse the start"))
+        self.limit.setAccessibleDescription(tr("What no closed sheet shows of the target"))
         for warning in (self.reach, self.start_refusal, self.limit):
             warning.setObjectName("warning")
             warning.setVisible(False)
@@ -168,6 +168,7 @@ class TargetPanel(Card):
         self.view.tool_left.connect(lambda: self.set_tool(Tool.POSE))
         self.view.editing_left.connect(lambda: self.set_editing(False))
         self.view.typed.connect(self._begin_text)
+        self.tools.options.text.returnPressed.connect(self.view.lay_text)
         self.set_editing(False)
         self.show_target(None)
 
@@ -358,7 +359,12 @@ class RefineBar(QWidget):
     def show_placed(self, placed: Placed | None) -> None:
         """Show the target's size on the board."""
         self.setEnabled(placed is not None)
+        for field in (self.width_, self.height_):
+            field.setSpecialValueText("" if placed is not None else UNKNOWN)  # at the least value
         if placed is None:
+            for field in (self.width_, self.height_):
+                with QSignalBlocker(field):
+                    field.setValue(field.minimum())
             return
         width, height = self._size = placed.size
         self._ratio = width / height

@@ -18,7 +18,7 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.target.reshaping import TargetReshaper
 from kirigami_studio.gui.target.sketch_context import Change
-from kirigami_studio.gui.target.target_panel import TargetPanel
+from kirigami_studio.gui.target.target_panel import DONE_HINT, TargetPanel
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.target.targeting import StartReader, Targeting
 from kirigami_studio.outlines.outline import Outline
@@ -169,7 +169,9 @@ class TargetPresenter(QObject):
         self._errors.clear()
 
     def _show_hint(self, text: str) -> None:
-        if text:
+        if text == tr(DONE_HINT) and self._session.document.candidates:
+            self._session.set_status("")
+        elif text:
             self._session.set_status(text)
 
     def show_document(self, document: Document) -> None:

@@ -27,7 +27,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.target.point_tool import PointTool
 from kirigami_studio.gui.target.pose_tool import PoseTool
 from kirigami_studio.gui.target.rulers import RULER, Rulers
-from kirigami_studio.gui.target.shape_tools import Freehand, Pen, figure_tool, text_tool
+from kirigami_studio.gui.target.shape_tools import BoxTool, Freehand, Pen, figure_tool, text_tool
 from kirigami_studio.gui.target.sketch_context import BOARD, PointerEvent, SketchContext, SketchTool
 from kirigami_studio.gui.widgets.canvas import ZOOM_STEP, Canvas
 from kirigami_studio.gui.widgets.file_drops import FileDrops
@@ -109,6 +109,13 @@ class TargetView(Canvas):
     def active(self) -> SketchTool:
         """What follows the pointer now."""
         return self._tools[self.tool]
+
+    def lay_text(self) -> None:
+        """Lay the text that was typed on the board, as Enter does for every shape."""
+        tool = self.active
+        if isinstance(tool, BoxTool):
+            tool.lay()
+            self.setFocus()
 
     def show_outline(
         self, outline: Outline | None, picture: Picture | None = None, objects: tuple[Outline, ...] = ()

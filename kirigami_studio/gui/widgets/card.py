@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QObject, QSize, Qt
-from PySide6.QtGui import QAction, QPainter, QPaintEvent
+from PySide6.QtCore import QEvent, QObject, QPoint, QSize, Qt
+from PySide6.QtGui import QAction, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractSpinBox,
     QFrame,
@@ -32,6 +32,7 @@ class Card(QFrame):
     def __init__(self, title: str, parent: QWidget | None = None, right_inset: int = INSET) -> None:
         super().__init__(parent)
         self.setObjectName("card")
+        self.setAccessibleName(title)
         self.title = label(title, name="cardTitle")
         self.title.setMinimumHeight(30)
         self.header, self.body = row((self.title, 1), spacing=4), column(spacing=8)
@@ -95,6 +96,9 @@ class ElidedLabel(QLabel):
         super().setText(shortened(text))
         self.setToolTip(self.text())
 
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(0, super().minimumSizeHint().height())
+
     def drawn_text(self) -> str:
         """What is shown at the present width."""
         room = self.contentsRect().width()
@@ -103,9 +107,7 @@ class ElidedLabel(QLabel):
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802 - Qt's name
         painter = QPainter(self)
         painter.setPen(self.palette().color(self.foregroundRole()))
-        painter.drawText(
-            self.contentsRect(), int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft), self.drawn_text()
-        )
+        painter.drawText(self.contentsRect(), int(self.alignment()), self.drawn_text())
         painter.end()
 
 
@@ -133,7 +135,7 @@ class FittingLabel(QLabel):
 
 
 class ScrolledWhenShort(QScrollArea):
-    """As high as its content where that fits, scrolled where it does not."""
+    """As high as its content where that fits; else scrolled, ending below a whole row at first."""
 
     def __init__(self, content: QWidget, least: int) -> None:
         super().__init__()
@@ -150,7 +152,24 @@ class ScrolledWhenShort(QScrollArea):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
         if event.type() == QEvent.Type.LayoutRequest:
             self.updateGeometry()
+            self._end_below_row()
         return super().eventFilter(watched, event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._end_below_row()
+
+    def _end_below_row(self) -> None:
+        """Leave free the room where a row would be cut off."""
+        room, free = self.height(), 0
+        if self._content.sizeHint().height() > room:
+            parts = [part for part in self._content.findChildren(QWidget) if _in_row(part, self._content)]
+            spans = [(part.mapTo(self._content, QPoint()).y(), part.height()) for part in parts]
+            ends = [top + height for top, height in spans if top + height <= room]
+            whole = [end for end in ends if not any(top < end < top + height for top, height in spans)]
+            free = room - max(whole, default=room)
+        if free != self.viewportMargins().bottom():
+            self.setViewportMargins(0, 0, 0, free)
 
     def sizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return self._content.sizeHint()
@@ -159,6 +178,12 @@ class ScrolledWhenShort(QScrollArea):
         # The bar stands beside the content, not on it.
         width = self._content.minimumSizeHint().width() + self.verticalScrollBar().sizeHint().width()
         return QSize(width, min(self._least, self.sizeHint().height()))
+
+
+def _in_row(part: QWidget, content: QWidget) -> bool:
+    """Whether a layout has put it where it stands, and it is no pane that holds others."""
+    holder = part.parentWidget()
+    return part.isVisibleTo(content) and part.layout() is None and holder is not None and holder.layout() is not None
 
 
 def compact(box: QAbstractSpinBox, width: int = 62) -> None:

@@ -43,11 +43,11 @@ class Chart(QWidget):
 
     def __init__(self, title: str, unit: str, names: tuple[str, ...], from_zero: bool = False) -> None:
         super().__init__()
-        self._unit, self._names, self._from_zero = unit, names, from_zero
+        self._title, self._names, self._from_zero = title, names, from_zero
         self._nearest: int | None = None
         self._palette: Palette = LIGHT
         self._series = Series(np.zeros(0), tuple(np.zeros(0) for _ in names))
-        self.setAccessibleName(tr("{title}, {unit}", title=title, unit=unit))
+        self.set_unit(unit)
         self.numbers = QLabel()
         own_markup(self.numbers)
         self.numbers.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
@@ -101,6 +101,11 @@ class Chart(QWidget):
         """Whether the angle axis has numbers."""
         self.plot.getAxis("bottom").setStyle(showValues=shown)
         self.plot.getAxis("bottom").setHeight(None if shown else 6)
+
+    def set_unit(self, unit: str) -> None:
+        """Set the unit that is read out with the numbers."""
+        self._unit = unit
+        self.setAccessibleName(tr("{title}, {unit}", title=self._title, unit=unit))
 
     def set_palette(self, palette: Palette) -> None:
         self._palette = palette

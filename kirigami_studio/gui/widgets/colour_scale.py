@@ -11,10 +11,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QLinearGradient, QPainter, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.words import mark, number, tr
+from kirigami_studio.foundation.words import ShownUnit, mark, number, tr
 from kirigami_studio.gui.widgets.legends import paint_chip
 from kirigami_studio.gui.widgets.paths import ink
-from kirigami_studio.gui.widgets.readable import ShownUnit
 from kirigami_studio.gui.widgets.theme import Palette
 
 #: Shades of a scale; neighbours cannot be told apart.

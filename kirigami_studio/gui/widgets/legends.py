@@ -11,9 +11,10 @@ import numpy as np
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPen
 
+from kirigami_studio.foundation.words import ShownUnit
 from kirigami_studio.gui.widgets.fitted_text import elided
 from kirigami_studio.gui.widgets.paths import ink
-from kirigami_studio.gui.widgets.readable import ShownUnit, readable_mm
+from kirigami_studio.gui.widgets.readable import readable_mm
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 

@@ -12,9 +12,10 @@ from PySide6.QtCore import QEvent, QRect, Qt, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QHideEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QLabel, QPlainTextEdit, QSizePolicy, QWidget
 
-from kirigami_studio.foundation.words import tr
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.widgets import icons
+from kirigami_studio.gui.widgets.announcing import announce
 from kirigami_studio.gui.widgets.card import ToolButton
 from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
@@ -23,6 +24,8 @@ from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 FADE_MS = 12_000
 #: Lines of details that are shown without scrolling.
 MOST_LINES = 9
+#: Names of the tones for screen readers, in the place of the icon.
+TONES = {Tone.HINT: mark("Hint"), Tone.DONE: mark("Done"), Tone.WARNING: mark("Warning"), Tone.ERROR: mark("Error")}
 
 
 class MessageBar(QFrame):
@@ -91,6 +94,7 @@ class MessageBar(QFrame):
         self._messages = [one for one in self._messages if one.tone in (Tone.ERROR, Tone.WARNING)]
         self._messages.append(message)
         self._go(len(self._messages) - 1)
+        announce(self, message.sentence, urgent=message.tone in (Tone.ERROR, Tone.WARNING))
 
     def close_message(self) -> None:
         """Close the message that is shown."""
@@ -157,6 +161,7 @@ class MessageBar(QFrame):
         self.previous.setEnabled(self._at > 0)
         self.next.setEnabled(self._at < len(self._messages) - 1)
         colour = self._palette.accent if message.tone in (Tone.HINT, Tone.DONE) else self._palette.warning
+        self.icon.setAccessibleName(tr(TONES[message.tone]))
         self.icon.setPixmap(icons.pixmap(message.tone.value, colour, 20, self.devicePixelRatioF()))
         if message.tone in (Tone.HINT, Tone.DONE) and not message.actions and self.isVisible():
             self._fading.start()

@@ -23,7 +23,10 @@ from kirigami_studio.gui.widgets.view_transform import ViewTransform
 from kirigami_studio.outlines.outline import Outline
 
 if TYPE_CHECKING:
+    from shapely.geometry import Polygon
     from shapely.geometry.base import BaseGeometry
+
+    from kirigami_studio.assembly.posed_pieces import PosedPieces
 
 #: Places on each boundary at which the distance is measured, beside its corners.
 STATIONS = 256
@@ -54,11 +57,31 @@ def mismatch(
     A sheet whose outline crosses itself is read as the area it covers.  Its ``voids`` (V, 4, 2) count as covered, but
     for those beside the target that a cut has opened.
     """
+    wanted = _polygon(target)
+    return _differences(wanted, covered(sheet, wanted, removed, voids))
+
+
+def mismatch_of_area(target: ShapeRings, area: Polygon) -> Mismatch:
+    """Compare an area over its target as its match is measured: filled, open at holes."""
+    from kirigami_studio.evaluate.siou import shown_area
+
+    wanted = _polygon(target)
+    return _differences(wanted, shown_area(area, wanted))
+
+
+def mismatch_of_pieces(target: ShapeRings, pieces: PosedPieces, phi: float) -> Mismatch:
+    """Compare pieces on pins at an angle (radians) with their target, by their match."""
+    return _differences(_polygon(target), pieces.silhouette(phi, target))
+
+
+def _polygon(rings: ShapeRings) -> Polygon:
     import shapely  # 70 ms that the empty window need not pay
 
-    outer, *holes = as_rings(target)
-    wanted = shapely.Polygon(outer, holes)
-    shown = covered(sheet, wanted, removed, voids)
+    outer, *holes = as_rings(rings)
+    return shapely.Polygon(outer, holes)
+
+
+def _differences(wanted: Polygon, shown: BaseGeometry) -> Mismatch:
     missing, extra = wanted.difference(shown), shown.difference(wanted)
     gap = boundary_gap(wanted, shown)
     return Mismatch(missing, extra, missing.area / wanted.area, extra.area / wanted.area, wanted.area, gap)

@@ -11,7 +11,7 @@ from PySide6.QtGui import QKeyEvent, QValidator
 from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QLabel, QSlider, QWidget
 
 from kirigami_studio.foundation.units import MM_PER_INCH
-from kirigami_studio.gui.widgets.readable import ShownUnit
+from kirigami_studio.foundation.words import ShownUnit
 
 #: Keys that, with Ctrl, mean something to the window: undo, redo and export.  A field keeps undo while it is typed in.
 WINDOW_KEYS = (Qt.Key.Key_Z, Qt.Key.Key_Y, Qt.Key.Key_E)
@@ -150,6 +150,8 @@ class LengthField(DecimalField):
     """A length in mm, shown in mm or inches, and typed as ``3 in``, ``3/8"`` or ``50 um``."""
 
     units = LENGTH_UNITS
+    #: What the tooltip and the description say in mm.
+    about = described = ""
 
     @property
     def assumed(self) -> str:  # type: ignore[override]
@@ -159,6 +161,16 @@ class LengthField(DecimalField):
     def setSuffix(self, suffix: str) -> None:  # noqa: N802 - Qt's name
         """Set the unit that stands behind the number, if one does: that of all lengths."""
         super().setSuffix(suffix and f" {ShownUnit.name()}")
+
+    def setToolTip(self, text: str) -> None:  # noqa: N802 - Qt's name
+        """Set a tooltip about mm, which says the shown unit."""
+        self.about = text
+        super().setToolTip(ShownUnit.words(text))
+
+    def setAccessibleDescription(self, text: str) -> None:  # noqa: N802 - Qt's name
+        """Set a description about mm, which says the shown unit."""
+        self.described = text
+        super().setAccessibleDescription(ShownUnit.words(text))
 
     def textFromValue(self, value: float) -> str:  # noqa: N802 - Qt's name
         """Write a length in the unit of all lengths (Qt's own call)."""
@@ -174,6 +186,8 @@ def show_lengths(root: QWidget, inches: bool) -> None:
     for field in root.findChildren(LengthField):
         field.setSuffix(field.suffix())
         field.setDecimals(field.decimals())  # or the text would stay
+        field.setToolTip(field.about)
+        field.setAccessibleDescription(field.described)
     for part in root.findChildren(QWidget):
         if (caption := part.property(CAPTION)) is not None and isinstance(part, QLabel):
             part.setText(ShownUnit.words(caption))

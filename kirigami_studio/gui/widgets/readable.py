@@ -3,38 +3,12 @@
 from __future__ import annotations
 
 import math
-import re
-from typing import ClassVar
 
 from kirigami_studio.foundation.units import MM_PER_INCH
-from kirigami_studio.foundation.words import number, tr
+from kirigami_studio.foundation.words import ShownUnit, number, tr
 
 UNKNOWN = "\N{EN DASH}"
 TIMES = "\N{MULTIPLICATION SIGN}"
-
-
-class ShownUnit:
-    """The unit of all lengths on the screen: mm, or inches by one switch; values stay in mm."""
-
-    inches: ClassVar[bool] = False
-
-    @classmethod
-    def mm(cls) -> float:
-        """Millimetres in one."""
-        return MM_PER_INCH if cls.inches else 1.0
-
-    @classmethod
-    def name(cls) -> str:
-        """Its sign."""
-        return tr("in") if cls.inches else tr("mm")
-
-    @classmethod
-    def words(cls, text: str) -> str:
-        """A caption or a spoken name that tells of mm, with the shown unit."""
-        if not cls.inches:
-            return text
-        text = text.replace(tr("in millimetres"), tr("in inches"))
-        return re.sub(r"\bmm\b", tr("in"), text)
 
 
 def in_unit(mm: float, digits: int) -> str:
@@ -80,8 +54,12 @@ def readable_box(width_mm: float, height_mm: float, form: str = ".4g") -> str:
 
 
 def readable_time(seconds: float) -> str:
-    """Seconds up to two minutes, then minutes."""
-    return tr("{seconds:.0f} s", seconds=seconds) if seconds < 120 else tr("{seconds:.1f} min", seconds=seconds / 60)
+    """Seconds up to two minutes, minutes up to two hours, then hours."""
+    if seconds < 120:
+        return tr("{seconds:.0f} s", seconds=seconds)
+    if seconds < 7200:
+        return tr("{seconds:.1f} min", seconds=seconds / 60)
+    return tr("{hours:.1f} h", hours=seconds / 3600)
 
 
 def readable_range(low: float, high: float) -> str:
@@ -90,7 +68,9 @@ def readable_range(low: float, high: float) -> str:
         return readable_time(low)
     if high < 120:
         return tr("{low:.0f}\N{EN DASH}{high:.0f} s", low=low, high=high)
-    return tr("{low:.1f}\N{EN DASH}{high:.1f} min", low=low / 60, high=high / 60)
+    if high < 7200:
+        return tr("{low:.1f}\N{EN DASH}{high:.1f} min", low=low / 60, high=high / 60)
+    return tr("{low:.1f}\N{EN DASH}{high:.1f} h", low=low / 3600, high=high / 3600)
 
 
 def readable_mm(mm: float) -> str:

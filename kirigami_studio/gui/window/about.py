@@ -57,6 +57,7 @@ class AboutWindow(SearchWindow):
 
     def _lay_out(self) -> None:
         picture, name = QLabel(), QLabel("Kirigami Studio")
+        picture.setAccessibleName(tr("Sign of the program"))
         picture.setPixmap(coloured("kirigami-studio", ICON, self.devicePixelRatioF()))
         font = name.font()
         font.setPointSizeF(1.6 * font.pointSizeF())

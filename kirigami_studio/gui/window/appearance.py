@@ -9,14 +9,13 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication, QWidget
 
+from kirigami_studio.foundation.words import ShownUnit, tr
 from kirigami_studio.foundation.words import language as spoken_language
-from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.session.messages import Message
 from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.session.user_preferences import UserPreferences
 from kirigami_studio.gui.widgets import theme
 from kirigami_studio.gui.widgets.number_field import show_lengths
-from kirigami_studio.gui.widgets.readable import ShownUnit
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.project.preferences import LengthUnit, Theme
 

@@ -14,11 +14,11 @@ from kirigami_studio.gui.session.command import Command, Switch, WindowState
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.widgets.actions import CommandActions
+from kirigami_studio.gui.widgets.announcing import announce
 from kirigami_studio.gui.widgets.canvas import name_roles
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.fitted_text import BriefTooltips
-from kirigami_studio.gui.widgets.layouts import label
 from kirigami_studio.gui.widgets.message_bar import MessageBar
 from kirigami_studio.gui.widgets.number_field import leave_wheel
 from kirigami_studio.gui.widgets.theme import Palette
@@ -33,7 +33,7 @@ from kirigami_studio.gui.window import (
 from kirigami_studio.gui.window.appearance import Appearance
 from kirigami_studio.gui.window.file_commands import FileCommands
 from kirigami_studio.gui.window.open_dialogs import Dialogs
-from kirigami_studio.gui.window.pages import Pages, WindowPage
+from kirigami_studio.gui.window.pages import WORDS, Pages, WindowPage
 from kirigami_studio.gui.window.presenters import Presenters
 from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.submenus import LanguageMenu, PictureMenu, RecentMenu, offer_context_menus
@@ -97,7 +97,7 @@ class MainWindow(QMainWindow):
         )
         self.pasting = PasteReader(session, self)
         self.picturing = PictureMaker(self, session, services.cutting)
-        self.heading = label()  #: name of the project, in the middle of the toolbar
+        self.heading = ElidedLabel()  #: name of the project, in the middle of the toolbar
         self.heading.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.heading.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self.presenters = Presenters(
@@ -122,7 +122,7 @@ class MainWindow(QMainWindow):
 
     def _build_status(self) -> None:
         self.status_text = ElidedLabel(Qt.TextElideMode.ElideRight)
-        self.status_text.setAccessibleName(tr("Status"))
+        self.status_text.setAccessibleDescription(tr("Status"))
         self.status_text.setContentsMargins(12, 0, 8, 0)
         self.facts = QLabel()
         bar = self.statusBar()
@@ -139,6 +139,7 @@ class MainWindow(QMainWindow):
         session.status_changed.connect(self.status_text.setText)
         self.presenters.stage.facts_changed.connect(self.facts.setText)
         session.document_changed.connect(self._show_title)
+        self.pages.turned.connect(self._announce_page)
         self._show_title()
         self.status_text.setText(tr("Choose or draw a target to begin."))
 
@@ -149,6 +150,10 @@ class MainWindow(QMainWindow):
         self.setWindowTitle(tr("{name}[*] \N{EN DASH} Kirigami Studio", name=literal))
         self.setWindowModified(unsaved)
         self.heading.setText(tr("{name}  ·  unsaved changes", name=name) if unsaved else name)
+
+    def _announce_page(self, page: WindowPage) -> None:
+        title, about = (tr(words) for words in WORDS[page])
+        announce(self, f"{title}. {about}")
 
     def _all_commands(self) -> tuple[Command, ...]:
         """The commands in the order of the menus, one record each."""

@@ -7,7 +7,7 @@ from enum import Enum
 from PySide6.QtCore import QSettings, Qt, Signal
 from PySide6.QtWidgets import QSplitter, QStackedWidget, QWidget
 
-from kirigami_studio.foundation.words import mark
+from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.gallery.gallery_panel import GalleryPanel
 from kirigami_studio.gui.make.cut_view import CutView
 from kirigami_studio.gui.make.cuts_page import CutBar, CutsPage
@@ -109,6 +109,7 @@ class Pages(QWidget):
 
     def _show(self) -> None:
         shown = self._parts[self.page]
+        self.setAccessibleName(tr(WORDS[self.page][0]))
         for part in {part for parts in self._parts.values() for part in parts}:
             part.setVisible(part in shown)
         self.target.set_editing(self.page is WindowPage.SHAPE)

@@ -107,6 +107,7 @@ class Presenters(QObject):
             curves=services.curves,
             grips=services.grips,
             name_of=gallery.view.model_.name_of,
+            estimates=services.estimates,
         )
         self.making = FabricationPresenter(
             pages.fabrication,
@@ -335,6 +336,7 @@ class Presenters(QObject):
         """Lengths are shown in another unit: write them all again."""
         self._show_document(self._services.session.document)
         self.making.show_unit()
+        self._pages.stage.plots.show_unit()
 
     def refit(self, on: bool) -> None:
         """Fit the chosen design again, or stop fitting."""

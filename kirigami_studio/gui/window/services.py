@@ -87,6 +87,7 @@ class Services(QObject):
         self.cutting.refused.connect(self.as_cut.forget)
         self.cutting.not_planned.connect(self.verdict.take_refusal)
         self.verdict.judged.connect(self.estimates.take_verdict)
+        self.pieces.judged.connect(self.estimates.take_verdict)
         self.exporter.exported.connect(self.verdict.take_export)
 
     def stop_on_design(self) -> None:

@@ -16,7 +16,7 @@ from kirigami_studio.gui.gallery.gallery_model import described
 from kirigami_studio.gui.make.verdict_bar import VerdictBar
 from kirigami_studio.gui.session.overlays import USUAL, Overlay
 from kirigami_studio.gui.session.session import Entry, Session
-from kirigami_studio.gui.stage.as_cut import UNKNOWN, AsCutState
+from kirigami_studio.gui.stage.as_cut import UNKNOWN, AsCutEstimates, AsCutState
 from kirigami_studio.gui.stage.curves import CurveReader
 from kirigami_studio.gui.stage.deployment_bar import DeploymentBar
 from kirigami_studio.gui.stage.gripping import GripFinder
@@ -27,9 +27,10 @@ from kirigami_studio.gui.stage.void_bar import VoidBar
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
 from kirigami_studio.gui.widgets.layouts import column, plain_pane
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.studio.as_cut import AsCut
 from kirigami_studio.studio.designing import limit_of
 from kirigami_studio.studio.making import MadePieces, Planned
-from kirigami_studio.studio.two_states import TwoStates, match_of_start, start_of
+from kirigami_studio.studio.two_states import TwoStates, shown_flat_match, shown_match, start_of
 
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
 WIDE = 640
@@ -73,6 +74,7 @@ class StagePanel(Card):
         self._target: Outline | None = None
         self._name = ""
         self._limit = ""
+        self._known: AsCut | None = None  # of the design, beside its score
         self._width_mm = USUAL_WIDTH_MM
         self._trimmable, self._trimming = True, False
         self._as_cut = UNKNOWN
@@ -316,7 +318,8 @@ class StagePanel(Card):
         if entry is None or target is None:
             self.ends.show_states(None)
         else:
-            self.ends.show_states(TwoStates.of(entry.candidate, entry.design, target, self._width_mm))
+            known = None if self._sample is not None else self._known
+            self.ends.show_states(TwoStates.of(entry.candidate, entry.design, target, self._width_mm, known))
 
     def _show(self) -> None:
         """Show the present design, or its sample."""
@@ -347,6 +350,13 @@ class StagePanel(Card):
         self.view.show_tiles(made.layers if isinstance(made, Planned) else None)
         self.show_title()
 
+    def show_known(self, known: AsCut | None) -> None:
+        """Show the match of a design as it is known now: of its pieces once they were put together."""
+        if known is not self._known:
+            self._known = known
+            self.show_title()
+            self._show_ends()
+
     def show_limit(self, text: str) -> None:
         """Say beside the match what no closed sheet shows of the target; "" for nothing."""
         if text != self._limit:
@@ -360,7 +370,8 @@ class StagePanel(Card):
         self.title.setText(tr("Comparison") if self.comparing else alone)
         self.numbers.set_texts(*self._texts())
         limit = [self._limit] if self._limit else []
-        self.numbers.setToolTip("" if entry is None else "\n".join([described(entry.candidate, name), *limit]))
+        about = "" if entry is None else described(entry.candidate, name, self._known)
+        self.numbers.setToolTip("\n".join([about, *limit]) if about else "")
         self._fit_numbers()
 
     def _texts(self) -> tuple[str, ...]:
@@ -368,7 +379,7 @@ class StagePanel(Card):
         if self.comparing:
             return self.compare.summary
         sample = None if self._sample is None else self._sample.candidate
-        return () if self._entry is None else score_texts(self._entry.candidate, sample, self._width_mm)
+        return () if self._entry is None else score_texts(self._entry.candidate, sample, self._width_mm, self._known)
 
     def _fit_numbers(self) -> None:
         """Put the longest text that fits into the header; none fits beside many buttons in a narrow stage."""
@@ -443,9 +454,15 @@ class StagePanel(Card):
         self.overlays_changed.emit(chosen)
 
 
-def score_texts(candidate: Candidate, sample: Candidate | None, width_mm: float) -> tuple[str, ...]:
-    """Figures of a design on a sheet of a width, beside those of its sample if that is shown, longest text first."""
-    score, trim = candidate.score, candidate.trim
+def score_texts(
+    candidate: Candidate, sample: Candidate | None, width_mm: float, known: AsCut | None = None
+) -> tuple[str, ...]:
+    """Figures of a design on a sheet of a width, beside those of its sample if that is shown, longest text first.
+
+    ``known`` is what is known of it as cut.
+    """
+    score, of_pieces = candidate.score, known is not None and known.of_pieces
+    trim = None if of_pieces else candidate.trim  # pieces are cut by rules of their own
     whole = tr("{percent:.1f} %", percent=100 * score.iou_exact)
     if sample is not None:
         before = tr("{percent:.1f} %", percent=100 * sample.score.iou_exact)
@@ -455,7 +472,7 @@ def score_texts(candidate: Candidate, sample: Candidate | None, width_mm: float)
         trimmed = tr("{percent:.1f} %", percent=100 * trim.iou)
         long = tr("match {trimmed}  ·  {match} untrimmed", match=whole, trimmed=trimmed)
         return long, tr("{trimmed}  ·  {match} untrimmed", match=whole, trimmed=trimmed)
-    match, variation = 100 * score.iou_exact, 100 * score.evenness.area_cv
+    match, variation = 100 * shown_match(candidate, known), 100 * score.evenness.area_cv
     smallest_mm = score.evenness.least_feature_mm(width_mm)
     return (
         tr(
@@ -476,6 +493,8 @@ class StagePresenter(QObject):
     ----------
     name_of : callable
         What a design is called.
+    estimates : AsCutEstimates
+        What is known of designs as cut.
     """
 
     facts_changed = Signal(str)  #: what the status line says of the design
@@ -488,15 +507,19 @@ class StagePresenter(QObject):
         curves: CurveReader,
         grips: GripFinder,
         name_of: Callable[[Candidate | None], str],
+        estimates: AsCutEstimates,
     ) -> None:
         super().__init__(panel)
         self._panel, self._session, self._curves, self._name_of = panel, session, curves, name_of
+        self._estimates, self._facts = estimates, ""
         self._running = False
         panel.plots_switch.switch.toggled.connect(curves.want)
         panel.status.connect(session.set_status)
         panel.overlays_changed.connect(lambda shown: grips.want(Overlay.GRIPS in shown))
         curves.grown.connect(panel.plots.show_curves)
         grips.changed.connect(panel.view.show_grips)
+        estimates.changed.connect(self._show_known)
+        estimates.judged.connect(self._show_known)
         self.show_document()
         self.show_design(None)
 
@@ -536,7 +559,17 @@ class StagePresenter(QObject):
         self._show_width()
         self._panel.show_entry(entry, target, self._name_of(candidate))
         self._curves.show(None if entry is None else entry.design, target)
-        self.facts_changed.emit("" if entry is None else "   ·   ".join(_facts(entry)))
+        self._show_known()
+
+    def _show_known(self) -> None:
+        """Say of the design on the stage what is known of it by now."""
+        entry = self._session.stage
+        known = None if entry is None else self._estimates.as_cut_of(entry.candidate)
+        self._panel.show_known(known)
+        facts = "" if entry is None else "   ·   ".join(_facts(entry, known))
+        if facts != self._facts:
+            self._facts = facts
+            self.facts_changed.emit(facts)
 
     def _show_width(self) -> None:
         """The flat sheet is as wide as opens the design on the stage to the size asked for."""
@@ -544,16 +577,18 @@ class StagePresenter(QObject):
         self._panel.set_sheet_width(self._session.width_of(None if stage is None else stage.candidate))
 
 
-def _facts(entry: Entry) -> list[str]:
-    """Facts about a design for the status line."""
+def _facts(entry: Entry, known: AsCut | None) -> list[str]:
+    """Facts about a design, with what is known of it as cut, for the status line."""
     (rows, columns), score, trim = entry.candidate.sheet.grid, entry.candidate.score, entry.candidate.trim
+    of_pieces = known is not None and known.of_pieces
     facts = [
         tr("{rows} \N{MULTIPLICATION SIGN} {columns} voids", rows=rows, columns=columns),
         tr("even rim") if entry.candidate.final_sheet.has_even_rim else tr("free rim"),
-        tr("match {match:.1f} %", match=100 * score.iou_exact),
+        tr("match {match:.1f} %", match=100 * (shown_match(entry.candidate, known) if of_pieces else score.iou_exact)),
     ]
-    if entry.candidate.sheet.start is not None and trim is None:
-        share = 100 * match_of_start(entry.candidate.sheet)
+    flat = shown_flat_match(entry.candidate, known)
+    if flat is not None and (of_pieces or entry.candidate.sheet.start is not None):
+        share = 100 * flat
         facts.append(tr("{start} {share:.1f} % when flat", start=start_of(entry.candidate), share=share))
     second = entry.candidate.second
     if second is not None:
@@ -565,6 +600,6 @@ def _facts(entry: Entry) -> list[str]:
             facts.append(tr("{name} {share:.1f} % at {angle:.0f}° untrimmed", name=shown, share=share, angle=angle))
     if entry.candidate.symmetry is not None:
         facts.insert(1, tr("symmetric"))
-    if trim is not None:
+    if trim is not None and not of_pieces:
         facts.append(tr("trimmed match {match:.1f} %", match=100 * trim.iou))
     return facts if score.feasible else [*facts, tr("overlaps itself")]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
@@ -16,35 +15,12 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.studio.projects import ChangedOnDisk
 
-
-@dataclass(frozen=True, slots=True)
-class Replacement:
-    """How the user is asked before another project replaces this one."""
-
-    question: str  #: asked while there are unsaved changes
-    proceed: str  #: the button that goes on without saving
-
-
-NEW_PROJECT = Replacement(
-    mark("This project has unsaved changes. Save before you start a new project?"),
-    mark("Start a new project without saving"),
-)
-OTHER_PROJECT = Replacement(
-    mark("This project has unsaved changes. Save before you open another project?"),
-    mark("Open another project without saving"),
-)
-SAMPLE = Replacement(
-    mark("This project has unsaved changes. Save before you open the sample project?"),
-    mark("Open the sample project without saving"),
-)
-PAIR = Replacement(
-    mark("This project has unsaved changes. Save before you open an example?"),
-    mark("Open the example without saving"),
-)
-RECOVERED = Replacement(
-    mark("This project has unsaved changes. Save before you recover another project?"),
-    mark("Recover another project without saving"),
-)
+#: How it is asked before another project replaces this one.
+NEW_PROJECT = mark("This project has unsaved changes. Save before you start a new project?")
+OTHER_PROJECT = mark("This project has unsaved changes. Save before you open another project?")
+SAMPLE = mark("This project has unsaved changes. Save before you open the sample project?")
+PAIR = mark("This project has unsaved changes. Save before you open an example?")
+RECOVERED = mark("This project has unsaved changes. Save before you recover another project?")
 
 
 class UnsavedWork(QObject):
@@ -86,15 +62,15 @@ class UnsavedWork(QObject):
         target = self._session.document.target
         return target.name if target is not None else "untitled"
 
-    def guard(self, replacement: Replacement, then: Callable[[], None]) -> None:
+    def guard(self, question: str, then: Callable[[], None]) -> None:
         """Do something that replaces the project; with unsaved changes ask first."""
-        if self._hand.postpones(lambda: self.guard(replacement, then)):
+        if self._hand.postpones(lambda: self.guard(question, then)):
             return
         if not self._session.history.unsaved:
             then()
             return
-        actions = ((tr("Save first"), self._save_first), (tr(replacement.proceed), then))
-        self._ask(Message(tr(replacement.question), Tone.WARNING, actions=actions))
+        actions = ((tr("Save first"), self._save_first), (tr("Don't save"), then))
+        self._ask(Message(tr(question), Tone.WARNING, actions=actions))
 
     def may_close(self) -> bool:
         """Whether the window may close now; asks when work would be lost."""

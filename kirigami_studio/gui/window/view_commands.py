@@ -100,10 +100,10 @@ def _overlays(stage: StagePanel) -> tuple[Command, ...]:
             inside(tr("&Overlays")), name, text, tip, stage.overlays[OVERLAY_COMMANDS[name]], key, icon, gap=gap
         )
 
-    small = tr("Mark the shortest edges and narrowest necks, in mm between cut centre lines")
+    small = tr("Mark the shortest edges and narrowest necks, between cut centre lines")
     stretch = tr("Colour connectors by their stretch at this angle, as cut")
     grips = tr("Mark the panels to hold and to pull so that the sheet opens as designed")
-    opening = tr("Colour voids by their area at this angle, mm²")
+    opening = tr("Colour voids by their area at this angle")
     return (
         overlay("show_target", tr("Tar&get outline"), "T", "target", tr("Show the target's outline")),
         overlay("show_mismatch", tr("&Mismatch"), "M", "mismatch", tr("Show missing and extra area")),
@@ -157,7 +157,7 @@ def _views(pages: Pages, presenters: Presenters) -> tuple[Command, ...]:
 def _zooms(pages: Pages) -> tuple[Command, ...]:
     """Commands that zoom the drawing board, the stage or the sheet."""
     board, command = pages.target, partial(Command, inside(tr("&Zoom")))
-    real = tr("Show a millimetre as long as it is on paper")
+    real = tr("Show the sheet as large as it is cut")
     drawn = partial(command, enabled_when=attrgetter("editing_target"))
     selected = tr("Show what is selected as large as possible")
 

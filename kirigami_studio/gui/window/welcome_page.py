@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QApplication, QGridLayout, QSizePolicy, QStyle, QW
 
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.export.paper import Paper
-from kirigami_studio.fabricate.machine import MachineKind, find_machine
+from kirigami_studio.fabricate.machine import MachineKind, cuttable, find_machine
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.make.machine_question import CuttingQuestion
@@ -27,6 +27,7 @@ from kirigami_studio.gui.stage.deployment_bar import phi_at
 from kirigami_studio.gui.stage.layout_view import LayoutView
 from kirigami_studio.gui.widgets.card import Card, ToolButton
 from kirigami_studio.gui.widgets.layouts import column
+from kirigami_studio.gui.widgets.readable import readable_mm
 from kirigami_studio.gui.window.pairs import PairList
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.edits import Edit
@@ -197,7 +198,8 @@ class WelcomePresenter(QObject):
     def choose(self, machine: str, material: str) -> None:
         """Cut this material on this machine from now on, in this project and in new ones."""
         preferences, session = self._preferences, self._session
-        chosen, known = find_machine(machine), find_material(material)
+        chosen = find_machine(machine)
+        known = cuttable(chosen).get(material) or find_material(material)  # with the machine's kerf and name
         wanted = replace(
             preferences.present, machine=machine, material=material, profile=chosen.profile, machine_asked=True
         )
@@ -218,7 +220,10 @@ class WelcomePresenter(QObject):
         self._page.ask(False)
         begin = tr("Cutting {material}. Press Generate (Ctrl+G).", material=tr(known.name))
         note = note_before_run(cut)
-        session.set_status(begin if note is None else note.text)
+        words = [begin if note is None else note.text]
+        if wanted.size is TypedSize.FLAT:
+            words.append(tr("Its sheets are {width} wide to begin with.", width=readable_mm(known.sheet_mm)))
+        session.set_status(" ".join(words))
 
     def decline(self) -> None:
         """Do not ask again."""

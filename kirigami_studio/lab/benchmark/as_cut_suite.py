@@ -176,7 +176,7 @@ def cut_sheet(
     export(ExportJob(motion, plan=plan), path)
     verified = verify_export(plan, path, DEFAULT_PROFILE)
     found = file_voids(read_with_ezdxf(path).strokes, plan, find_profile(DEFAULT_PROFILE))
-    sheet = result_of(simulate(motion, plan, settings.width_mm, best.final_phi, target))
+    sheet = result_of(simulate(motion, plan, settings.width_mm, best.final_phi, target, pose=best.final_pose))
     network, steps = sheet.closing.sheet.network, sheet.closing.path.motion
     # Voids of slits are as good as closed in the flat sheet, where their contacts do not press yet.
     free = (network.void_angles(steps) > CONTACT_BELOW - ROUNDING).all(axis=1)

@@ -1,4 +1,4 @@
-"""Targets of published kirigami designs, closed and half open, with the match of the published sheets beside ours."""
+"""Targets of published kirigami, closed and half open, beside the published sheets."""
 
 from __future__ import annotations
 

@@ -32,6 +32,8 @@ from kirigami_studio.settings.design import POLISH_STEPS
 
 #: Silhouettes whose runs at grid auto are timed, after that of another one, and workers that do them.
 RUNS, WARMING, RUN_WORKERS = ("heart", "star", "butterfly", "drop", "hexagon"), "egg", 2
+#: Silhouettes whose runs are timed in one process, so that all their processor time is seen.
+ALONE = ("heart", "butterfly")
 #: Candidates of the timed runs, and steps of the timed fits.
 K, STEPS = 32, 10
 #: Runs of what is short, of which the fastest counts.
@@ -166,7 +168,8 @@ def run_timings(
     figures : dict
         By silhouette: the ``grid`` that was chosen, wall seconds from the start of the run to the choice of the grid
         (``grid_s``), to the first polished symmetric design (``first_s``; None where no design is symmetric) and to its
-        end (``all_s``), and the ``iou_exact`` and ``panel_area_cv`` of the design that came first.
+        end (``all_s``); processor seconds of this process (``processor_s``: all of the run's without workers); and the
+        ``iou_exact`` and ``panel_area_cv`` of the design that came first.
     """
     pool = Pool(workers)
     try:
@@ -178,7 +181,7 @@ def run_timings(
 
 def _timed_run(request: Request, pool: Pool) -> dict[str, object]:
     first: float | None = None
-    began = time.perf_counter()
+    began, processor = time.perf_counter(), time.process_time()
     request = with_grid(request, pool)
     chosen = time.perf_counter() - began
     for event in run(request, pool=pool):
@@ -194,6 +197,7 @@ def _timed_run(request: Request, pool: Pool) -> dict[str, object]:
                     "grid_s": chosen,
                     "first_s": first,
                     "all_s": passed,
+                    "processor_s": time.process_time() - processor,
                     "iou_exact": score.iou_exact,
                     "panel_area_cv": score.evenness.area_cv,
                 }
@@ -260,5 +264,5 @@ def _fastest(work: Callable[[], object]) -> float:
 
 
 def all_timings() -> dict[str, object]:
-    """Time whole runs (``runs``), scores and fits (all of :func:`polish_timings`)."""
-    return {"runs": run_timings(), **polish_timings()}
+    """Time runs (``runs``, ``runs_alone`` in one process), scores and fits."""
+    return {"runs": run_timings(), "runs_alone": run_timings(ALONE, workers=0), **polish_timings()}

@@ -539,7 +539,7 @@ def starts(arguments: argparse.Namespace) -> int:
 
 
 def literature(arguments: argparse.Namespace) -> int:
-    """Targets of published designs; 1 where a best match is behind a published sheet of as many panels."""
+    """Design published targets; 1 where a published sheet of as many panels matches better."""
     from kirigami_studio.lab.benchmark.literature_suite import (
         design_literature,
         literature_figures,

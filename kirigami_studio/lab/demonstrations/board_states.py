@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 from PIL import Image, ImageDraw
 from PySide6.QtCore import QPointF, QSize
-from PySide6.QtWidgets import QApplication, QPushButton
+from PySide6.QtWidgets import QApplication, QPushButton, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.target.point_tool import PointTool
@@ -22,12 +23,8 @@ from kirigami_studio.outlines.merging import Join
 from kirigami_studio.outlines.mirroring import Axis
 from kirigami_studio.outlines.placed import Placed
 
-SIZES = (QSize(1000, 640), QSize(1280, 720), QSize(1440, 900))
-#: A large screen, for the states that look different there.
-LARGE = QSize(2560, 1440)
-LARGE_STATES = frozenset({"editor-points", "designs", "cuts", "half-open"})
-#: Size of the window at twice the scale: 2560 x 1440 device pixels.
-SCALED = QSize(1280, 720)
+#: Sizes of the window: the least and that of a small laptop; at twice the scale that of a screen of 3840 x 2160.
+SIZES, SCALED = (QSize(1000, 640), QSize(1280, 720)), (QSize(1920, 1080),)
 #: A rectangle with a notch, mm.
 HOLLOW = ((-40.0, -30.0), (40.0, -30.0), (40.0, 30.0), (0.0, 0.0), (-40.0, 30.0))
 #: A drawing with two layers and a stroke.
@@ -42,21 +39,26 @@ LONG_NAME = "a scanned drawing with the long name that scanners like to give, pa
 class BoardStates(OffscreenSession):
     """Takes one window through the states of the target, and a screenshot of each in all sizes and themes."""
 
-    def sizes(self, name: str) -> tuple[QSize, ...]:
-        """The window sizes of a state's screenshots."""
-        if self.window.devicePixelRatioF() > 1.0:
-            return (SCALED,)
-        return (*SIZES, LARGE) if name in LARGE_STATES else SIZES
-
-    def all_sizes(self, name: str) -> None:
-        """Take one picture for every size and theme."""
+    def all_sizes(self, name: str, ready: Callable[[], object] = lambda: None) -> None:
+        """Take one picture for every size and theme, each after ``ready``."""
+        scale = self.window.devicePixelRatioF()
         for palette in (LIGHT, DARK):
             self.window.appearance.set_theme(palette)  # styles every widget anew, which takes longer than another size
-            for size in self.sizes(name):
+            for size in SCALED if scale > 1.0 else SIZES:
                 self.window.resize(size)
-                QApplication.processEvents()
-                self.picture(f"{name}-{size.width()}x{size.height()}-{palette.name}")
+                for _ in range(3):
+                    QApplication.processEvents()
+                ready()
+                pixels = size * scale
+                self.picture(f"{name}-{pixels.width()}x{pixels.height()}-{palette.name}")
         self.window.appearance.set_theme(LIGHT)
+
+    def both_themes(self, name: str, widget: QWidget, ready: Callable[[], object] = lambda: None) -> None:
+        """Take one picture of a dialog for each theme, each after ``ready``."""
+        for palette in (DARK, LIGHT):
+            self.window.appearance.set_theme(palette)
+            ready()
+            self.picture(f"{name}-{palette.name}", widget)
 
     def picture_target(self) -> None:
         """Open a blurred grey picture."""
@@ -86,10 +88,8 @@ class BoardStates(OffscreenSession):
                 picker.painted.setChecked(True)
             if state == "hull":
                 picker.join.choose(Join.TIGHT)
-            for palette in (DARK, LIGHT):
-                self.window.appearance.set_theme(palette)
-                self.until(lambda: picker.complete, "the outline was not made")
-                self.picture(f"parts-{state}-{palette.name}", picker)
+            made = partial(self.until, lambda: picker.complete, "the outline was not made")
+            self.both_themes(f"parts-{state}", picker, made)
         picker.reject()
 
     def editor(self) -> None:
@@ -186,11 +186,8 @@ class BoardStates(OffscreenSession):
         if board is None:
             raise SessionError("The board did not open.")
         board.view.context.changed.emit(Change("Draw polygon", lambda: Placed.from_ring(HOLLOW, "polygon")))
-        for palette in (DARK, LIGHT):
-            window.appearance.set_theme(palette)
-            self.until(lambda: gallery.complete, "the pairs were not drawn")
-            self.picture(f"start-board-{palette.name}", board)
-            self.picture(f"pairs-{palette.name}", gallery)
+        self.both_themes("start-board", board)
+        self.both_themes("pairs", gallery, lambda: self.until(lambda: gallery.complete, "the pairs were not drawn"))
         board.close()
         gallery.list.itemActivated.emit(gallery.list.item(0))
         self.until(lambda: window.target.start.name == "circle", "the pair did not open")

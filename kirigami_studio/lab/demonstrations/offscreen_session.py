@@ -10,7 +10,7 @@ import argparse
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from PIL import Image
@@ -63,6 +63,9 @@ class PresetFiles:
 
 class OffscreenSession:
     """Plays the steps on one window and takes screenshots."""
+
+    #: Parts of a session that can be played alone, in their order.
+    chapters: Sequence[str] = ()
 
     def __init__(self, out: Path) -> None:
         self.out = out
@@ -250,6 +253,8 @@ def main(argv: list[str] | None = None, kind: type[OffscreenSession] = Offscreen
     parser.add_argument("--pairs", action="store_true", help="picture the bundled pairs instead")
     parser.add_argument("--scale", type=float, default=1.0, help="device pixels per pixel, such as 2 (default 1)")
     parser.add_argument("--language", default=SYSTEM, help="language of the window, such as de (default the desktop's)")
+    if kind.chapters:
+        parser.add_argument("--chapters", nargs="+", choices=kind.chapters, help="only these (default all)")
     chosen = parser.parse_args(argv)
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     if chosen.scale != 1.0:
@@ -260,6 +265,7 @@ def main(argv: list[str] | None = None, kind: type[OffscreenSession] = Offscreen
         create_application(["kirigami-studio"])
         speak(chosen.language)
         session = PairPictures(chosen.out) if chosen.pairs else kind(chosen.out)
+        session.chapters = getattr(chosen, "chapters", None) or session.chapters
         files = session.play()
     except (SessionError, KirigamiError, OSError) as error:
         sys.stderr.write(f"The session failed: {error}\n")

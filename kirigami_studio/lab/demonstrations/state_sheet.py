@@ -1,7 +1,8 @@
 """A screenshot of every state of the window, in every size and both themes, for review.
 
 ``python -m kirigami_studio.lab.demonstrations.state_sheet --out out/states`` writes them, and a page of small ones
-for every size and theme; ``--scale 2`` draws them for a high-resolution screen.
+for every size and theme; ``--language de`` in German, ``--scale 2`` on a screen of 3840 x 2160 at twice the scale,
+``--chapters pages`` only the three pages: empty, at first, done, with long names, refused, busy.
 """
 
 from __future__ import annotations
@@ -9,14 +10,17 @@ from __future__ import annotations
 import math
 import re
 import sys
+import traceback
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
 from PySide6.QtCore import QEvent, QPoint, Qt
 from PySide6.QtWidgets import QApplication
 
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.cards import CardButton
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
@@ -24,15 +28,14 @@ from kirigami_studio.gui.make.cut_view import CutOverlay
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.target.target_view import Tool
-from kirigami_studio.gui.widgets.language import SYSTEM, speak
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
-from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.pages import WindowPage
-from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, SIZES, BoardStates
+from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, BoardStates
 from kirigami_studio.lab.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Mark
 from kirigami_studio.project.recovery import RecoveryNote
+from kirigami_studio.studio.targets import outline_of
 
 #: ``STATE-WIDTHxHEIGHT-THEME.png``, as the state sheet names its pictures.
 NAME = re.compile(r"(?P<state>.+)-(?P<group>\d+x\d+-(?:light|dark))")
@@ -41,6 +44,8 @@ WIDTH, CAPTION = 480, 22
 GAP = 10
 COLUMNS = 4
 PAPER, INK = "#8a94a0", "#0b0f14"
+#: Width (mm) of a cut that leaves no panel.
+TOO_WIDE = 4.0
 
 
 def contact_sheets(pictures: Sequence[Path], out: Path) -> list[Path]:
@@ -98,12 +103,117 @@ def _small(path: Path) -> Image.Image:
 class StateSheet(BoardStates):
     """Takes one window from state to state, with a screenshot of each in all sizes and themes."""
 
+    #: Chapters to picture; each begins where the one before it ended.
+    chapters: Sequence[str] = ("pages", "board", "collection", "stage", "making", "project", "dialogs", "pairs")
+
     def play(self) -> list[Path]:
         """Make all pictures and return their files."""
         window = self.window
         window.show()
-        self.all_sizes("empty")
-        self.welcome()
+        for chapter in self.chapters:
+            CHAPTERS[chapter](self)
+        window.session.history.mark_saved()
+        window.close()
+        self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
+        return self.files
+
+    def all_pages(self, state: str) -> None:
+        """Picture each page in every size and theme, and go back to the page before."""
+        before = self.window.pages.page
+        for page in WindowPage:
+            self.window.pages.turn(page)
+            self.all_sizes(f"{page.value}-{state}")
+        self.window.pages.turn(before)
+
+    def pages(self) -> None:
+        """The three pages in all their states, and a run whose designs improve at the end."""
+        self.all_pages("empty")
+        self.first()
+        self.done()
+        self.long()
+        self.refused()
+        self.busy()
+
+    def first(self) -> None:
+        """With the first question, over a finished pair."""
+        presenter, page = self.window.presenters.welcome, self.window.welcome
+        presenter.begin()
+        page.question.offer()
+        page.ask(True)
+        self.until(lambda: page.ready and page.pairs.complete, "the sample was not read")
+        page.stop()
+        page.view.set_phi(math.radians(100.0))
+        self.all_sizes("first-question")
+        presenter.decline()
+        self.all_sizes("sample")
+
+    def done(self) -> None:
+        """With designs, one of them planned, judged and exported."""
+        self.window.files.open_sample()
+        self._judged()
+        self.all_pages("done")
+
+    def long(self) -> None:
+        """With long names of project, target, design and file."""
+        window, session = self.window, self.window.session
+        document = session.document
+        if document.target is None or session.stage is None:
+            raise SessionError("There is no design to name.")
+        label = document.label_of(session.stage.candidate)
+        if label is not None:
+            window.services.labels.set(label, LONG_NAME, "The lobes are even; cut this one for the fair.")
+        renamed = replace(document.target, name=LONG_NAME)
+        session.restart(replace(session.document, target=renamed), Path(f"{LONG_NAME}.kiri"))
+        window.services.fabrication.change(machine="cricut-maker", material="polypropylene-co2")
+        state = window.services.verdict
+        self.until(lambda: state.state.verdict is not None and not state.state.pending, "the verdict did not come")
+        window.messages.add(Message(f"{LONG_NAME}.svg could not be read: {LONG_NAME}.", Tone.WARNING))
+        self.all_pages("long")
+        self._no_messages()
+        window.commands["undo"].trigger()
+        self._judged()
+
+    def refused(self) -> None:
+        """With cuts that leave no panel, an error with its details, and then a question."""
+        window, bar = self.window, self.window.messages
+        window.services.fabrication.change(kerf_mm=TOO_WIDE)
+        self.until(lambda: not window.fabrication.export.isEnabled(), "the wide kerf was not refused")
+        damaged = self.out / f"{LONG_NAME}.svg"
+        damaged.write_text("<svg><path", encoding="utf-8")
+        try:
+            outline_of(str(damaged))
+        except KirigamiError as error:
+            bar.add(Message(str(error), Tone.ERROR, traceback.format_exc()))
+        bar.details.setChecked(True)
+        self.all_pages("refused")
+        window.commands["new"].trigger()
+        self.all_sizes("question")
+        self._no_messages()
+        window.commands["undo"].trigger()
+        self._judged()
+
+    def busy(self) -> None:
+        """A short run, while its designs improve."""
+        window = self.window
+        settings = window.services.settings
+        settings.change(grid=(8, 8))
+        settings.change(k=DESIGNS)
+        settings.change(polish=20)
+        click(window.run.generate)
+        model = window.gallery.view.model_
+        self.until(lambda: any(one.candidate.polished for one in model.entries), "no design was polished")
+        self.all_pages("busy")
+        self.until(lambda: not window.services.run.running, "the run did not end")
+        self._judged()
+
+    def _no_messages(self) -> None:
+        while self.window.messages.messages:
+            self.window.messages.close_message()
+
+    def board(self) -> None:
+        """The board with its tools, the picker of parts, a photo, and designs for a heart."""
+        window = self.window
+        window.services.targeting.clear()
         window.target.set_tool(Tool.POLYGON)
         self.all_sizes("drawing")
         self.editor()
@@ -117,93 +227,53 @@ class StateSheet(BoardStates):
         self.all_sizes("photo-editor")
         window.target.set_editing(False)
         self.choose_heart()
-        self.polishing()
-        self.all_sizes("designs")
+        self.busy()
         self.lost_designs()
-        self.collection()
+
+    def stage(self) -> None:
+        """A design with overlays and curves, as drawn, trimmed, changed by hand, half open and flat."""
         self.overlays()
         self.plots()
         self.before_and_after()
         self.trimmed()
         self.by_hand()
+        for name, degrees in (("half-open", 100.0), ("flat", 180.0)):
+            self.window.stage.deployment.set_phi(math.radians(degrees))
+            self.all_sizes(name)
+
+    def making(self) -> None:
+        """The cut plan, its files, and the windows that make them."""
         self.cuts()
         self.exported()
-        window.stage.deployment.set_phi(math.radians(100.0))
-        self.all_sizes("half-open")
-        window.stage.deployment.set_phi(math.pi)
-        self.all_sizes("flat")
-        window.fabrication.lengths["connector_mm"].setValue(15.0)
-        self.until(lambda: not window.fabrication.export.isEnabled(), "the wide connector was not refused")
-        self.all_sizes("refused")
-        window.commands["undo"].trigger()
-        self.until(window.fabrication.export.isEnabled, "undo did not bring the plan back")
-        self.project()
-        self.messages()
-        click(window.target.buttons["library"])
-        if window.dialogs.picker is not None:
-            self.picture("library", window.dialogs.picker)
-            window.dialogs.picker.close()
-        window.dialogs.show_guide()
-        if window.dialogs.guide is not None:
-            self.picture("guide", window.dialogs.guide)
-        self.first_steps()
+        self.printing()
+
+    def pairs(self) -> None:
+        """The starts, the pairs, and a second target."""
         self.starts()
         self.second_target()
-        self.german()
-        self.files.extend(contact_sheets([file for file in self.files if file.suffix == ".png"], self.out))
-        return self.files
 
-    def welcome(self) -> None:
-        """The welcome page with the question for machine and material, and without it."""
-        presenter, page = self.window.presenters.welcome, self.window.welcome
-        presenter.begin()
-        self.until(lambda: page.ready, "the sample was not read")
-        page.stop()
-        page.view.set_phi(math.radians(100.0))
-        self.all_sizes("first-start")
-        presenter.decline()
-        self.all_sizes("sample")
+    def printing(self) -> None:
+        """The dialog of the printed pattern."""
+        self.window.commands["print"].trigger()
+        dialog = self.window.dialogs.printing
+        if dialog is None:
+            raise SessionError("The print dialog did not open.")
+        self.both_themes("print", dialog)
+        dialog.close()
 
-    def german(self) -> None:
-        """The main states in a language with longer words, in a window that is started again."""
-        self.window.start_again()
-        speak("de")
-        self.window = window = create_window(LIGHT, self.window)
-        window.session.history.mark_saved()
-        window.show()
-        window.files.open_sample()
-        self.until(window.fabrication.export.isEnabled, "the sample was not opened")
-        self.all_sizes("german-designs")
-        window.commands["cuts"].trigger()
-        self.all_sizes("german-cuts")
-        window.commands["cuts"].trigger()
-        window.target.set_editing(True)
-        self.all_sizes("german-board")
-        window.target.set_editing(False)
-        window.close()
-        speak(SYSTEM)
-
-    def first_steps(self) -> None:
-        """The sheet of keys, and the licences."""
+    def dialogs(self) -> None:
+        """The library, the guide, the sheet of keys, and the licences."""
         dialogs = self.window.dialogs
+        click(self.window.target.buttons["library"])
+        if dialogs.picker is not None:
+            self.both_themes("library", dialogs.picker)
+            dialogs.picker.close()
+        dialogs.show_guide()
         dialogs.show_shortcuts()
         dialogs.show_about()
-        for name, dialog in (("shortcuts", dialogs.shortcuts), ("about", dialogs.about)):
-            for palette in (DARK, LIGHT) if dialog is not None else ():
-                self.window.appearance.set_theme(palette)
-                self.picture(f"{name}-{palette.name}", dialog)
-
-    def polishing(self) -> None:
-        """A run whose designs improve, with a search after it."""
-        window = self.window
-        window.settings.search.setChecked(True)
-        window.settings.candidates.setValue(DESIGNS)
-        click(window.run.generate)
-        model = window.gallery.view.model_
-        self.until(lambda: any(one.candidate.polished for one in model.entries), "no design was polished")
-        self.all_sizes("polishing")
-        self.until(lambda: not window.services.run.running, "the run did not end")
-        self.until(window.fabrication.export.isEnabled, "no cut plan was made")
+        for name, dialog in (("guide", dialogs.guide), ("shortcuts", dialogs.shortcuts), ("about", dialogs.about)):
+            if dialog is not None:
+                self.both_themes(name, dialog)
 
     def collection(self) -> None:
         """Marks, filters, more designs like one, two side by side; then everything as it was."""
@@ -253,14 +323,12 @@ class StateSheet(BoardStates):
             raise SessionError("The table of all designs did not open.")
         for key in (Qt.Key.Key_1, Qt.Key.Key_Right, Qt.Key.Key_2, Qt.Key.Key_Right, Qt.Key.Key_3):
             press_key(page.table, key)
-        for palette in (LIGHT, DARK):
-            window.appearance.set_theme(palette)
-            for size in self.sizes("all-designs"):
-                window.resize(size)
-                page.table.viewport().repaint()
-                self.until(lambda: not page.table.cards.pending, "the cards got no pictures")
-                self.picture(f"all-designs-{size.width()}x{size.height()}-{palette.name}")
-        window.appearance.set_theme(LIGHT)
+
+        def drawn() -> None:
+            page.table.viewport().repaint()
+            self.until(lambda: not page.table.cards.pending, "the cards got no pictures")
+
+        self.all_sizes("all-designs", drawn)
         page.filters.least.setValue(100.0)
         self.all_sizes("all-designs-nothing")
         click(page.show_all)
@@ -359,14 +427,7 @@ class StateSheet(BoardStates):
         for name, degrees in (("half-open", 70.0), ("flat", 180.0), ("target", 0.0)):
             window.stage.deployment.set_phi(math.radians(degrees))
             view.voids.select(frozenset({(5, 5)}))
-            for size in SIZES:
-                window.resize(size)
-                for palette in (LIGHT, DARK):
-                    window.appearance.set_theme(palette)
-                    QApplication.processEvents()
-                    view.voids.point_at((6, 6))
-                    self.picture(f"by-hand-{name}-{size.width()}x{size.height()}-{palette.name}")
-        window.appearance.set_theme(LIGHT)
+            self.all_sizes(f"by-hand-{name}", lambda: view.voids.point_at((6, 6)))
         QApplication.sendEvent(view, QEvent(QEvent.Type.Leave))
         services.hand.nudge(frozenset({(5, 5)}), 0.3)
         self.until(lambda: not services.hand.busy, "the changed ratio was not scored")
@@ -416,16 +477,13 @@ class StateSheet(BoardStates):
         self.window.services.exporter.export(self.out / "cut.dxf")
         self.until(lambda: dialogs.report is not None, "no report was shown")
         dialogs.show_materials()
-        for palette in (DARK, LIGHT):
-            self.window.appearance.set_theme(palette)
-            if dialogs.report is not None and dialogs.materials is not None:
-                self.picture(f"report-{palette.name}", dialogs.report)
-                self.picture(f"materials-{palette.name}", dialogs.materials)
+        for name, dialog in (("report", dialogs.report), ("materials", dialogs.materials)):
+            if dialog is not None:
+                self.both_themes(name, dialog)
         if dialogs.materials is not None:
             dialogs.materials.close()
         dialogs.close_report()
-        while self.window.messages.messages:
-            self.window.messages.close_message()
+        self._no_messages()
 
     def _planned(self) -> bool:
         return bool(self.window.fabrication.summary.text())
@@ -442,8 +500,7 @@ class StateSheet(BoardStates):
         self.until(lambda: any(discard in dict(one.actions) for one in bar.messages), "the lost work was not offered")
         self.all_sizes("recovery")
         dict(bar.messages[-1].actions)[discard]()
-        while window.messages.messages:
-            window.messages.close_message()
+        self._no_messages()
         for name in ("teapot.kiri", "session.kiri"):
             filing.recent.take_project(self.out / name)
         filing.recent.take_target(str(self.out / f"{LONG_NAME}.png"))
@@ -485,18 +542,18 @@ class StateSheet(BoardStates):
             self.picture("second-board", window.dialogs.second_board)
             window.dialogs.second_board.close()
 
-    def messages(self) -> None:
-        """An error with details, then a question."""
-        bar = self.window.messages
-        sentence = f"{LONG_NAME}.svg crosses itself at (12.4, 88.1) mm; separate the two loops there and open it again."
-        bar.add(Message(sentence, Tone.ERROR, "first line of the trace\nsecond line of the trace"))
-        bar.details.setChecked(True)
-        self.all_sizes("error")
-        self.window.commands["new"].trigger()
-        self.all_sizes("question")
-        while bar.messages:
-            bar.close_message()
 
+#: What each chapter pictures.
+CHAPTERS: dict[str, Callable[[StateSheet], None]] = {
+    "pages": StateSheet.pages,
+    "board": StateSheet.board,
+    "collection": StateSheet.collection,
+    "stage": StateSheet.stage,
+    "making": StateSheet.making,
+    "project": StateSheet.project,
+    "dialogs": StateSheet.dialogs,
+    "pairs": StateSheet.pairs,
+}
 
 if __name__ == "__main__":
     sys.exit(main(kind=StateSheet))

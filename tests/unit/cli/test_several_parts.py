@@ -156,3 +156,77 @@ def test_that_python_gives_the_same_parts(made, letter: Path, tmp_path: Path) ->
     empty = ks.Parts(load(folder / "design.kiri"))
     with refused(ProjectError, "api.no_such_name"):
         _ = empty["tail"]
+
+
+@pytest.fixture(scope="module")
+def colon(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two equal dots, one above the other."""
+    path = tmp_path_factory.mktemp("colon") / "colon.svg"
+    size = 'width="40mm" height="70mm" viewBox="0 0 40 70"'
+    dots = '<circle id="upper" cx="20" cy="16" r="7"/><circle id="lower" cx="20" cy="50" r="7"/>'
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{dots}</svg>', encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def runs(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Names of the targets that are designed."""
+    from kirigami_studio.studio.designing import run_design
+
+    names: list[str] = []
+
+    def counted(request, *arguments, **more):
+        names.append(request.target.name)
+        return run_design(request, *arguments, **more)
+
+    monkeypatch.setattr("kirigami_studio.cli.design.run_design", counted)
+    monkeypatch.setattr("kirigami_studio.api.designs.run_design", counted)
+    return names
+
+
+def test_that_equal_parts_are_designed_once_and_both_cut(runs, colon: Path, tmp_path: Path, capsys) -> None:
+    wish = ["design", str(colon), "--parts", "all", "--join", "each", "--out", str(tmp_path), *QUICK]
+    assert main(wish) == 0
+    one, other = json.loads(capsys.readouterr().out)["parts"]
+    assert runs == ["upper"] and [one["name"], other["name"]] == ["upper", "lower"]
+    assert one["candidates"] == other["candidates"] and one["verdict"] == other["verdict"]
+    upper, lower = load(tmp_path / "design.kiri").parts
+    assert upper.candidate == lower.candidate and upper.place != lower.place and lower.target.name == "lower"
+    assert len(outlines_of(tmp_path / "cut.dxf")) == 2
+
+
+def test_that_python_designs_equal_parts_once(runs, colon: Path) -> None:
+    parts = ks.design_parts(colon, grid=(3, 3), k=1, polish=0, material="film-uv")
+    assert len(runs) == 1 and parts.names == ("upper", "lower")
+    assert parts["upper"].document.candidate == parts["lower"].document.candidate
+    assert parts["lower"].target.name == "lower"
+
+
+def test_that_fixes_are_told_for_each_part_that_fails(made, tmp_path: Path, capsys, monkeypatch) -> None:
+    from kirigami_studio.cli import fabrication
+
+    folder, _ = made
+    asked: list[str] = []
+
+    def advice(request, verdict):
+        asked.append(request.target.name)
+
+    monkeypatch.setattr(fabrication, "_advice", advice)
+    wish = ["export", str(folder / "design.kiri"), "--out", str(tmp_path / "cut.dxf"), "--json"]
+    main([*wish, "--fixes"])
+    found = json.loads(capsys.readouterr().out)["parts"]
+    failing = [part["name"] for part in found if not part["ok"]]
+    assert asked == failing
+    asked.clear()
+    main(wish)
+    assert asked == []
+
+
+def test_that_a_picture_says_which_part_it_shows(made, tmp_path: Path, capsys) -> None:
+    folder, _ = made
+    wish = ["export", str(folder / "design.kiri"), "--out", str(tmp_path / "view.png"), "--json"]
+    main(wish)
+    said = json.loads(capsys.readouterr().out)["warnings"]
+    assert sum("'stem'" in text or "'dot'" in text for text in said) == 1
+    main([*wish, "--part", "dot"])
+    assert not any("'dot'" in text for text in json.loads(capsys.readouterr().out)["warnings"])

@@ -13,12 +13,12 @@ from shapely.geometry import Polygon
 from trimmed_panels import compact_parts, deployed_parts
 
 from kirigami_studio.evaluate.kept_panels import all_panels
-from kirigami_studio.evaluate.notches import AT_HINGE
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.trimming import KEEP, Trim, trim
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.lattice.deployment import Deployment, deploy
+from kirigami_studio.lattice.left_corners import AT_CORNER
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.outlines.outline import Outline
 
@@ -84,7 +84,7 @@ def test_that_the_iou_is_that_of_the_parts_that_stay() -> None:
 def test_that_a_hinge_keeps_all_its_material_or_is_given_up(cut: Trim) -> None:
     deployment, away = deploy(cut.sheet), reached(cut)
     tables, hinged = deployment.topology.panel_nodes.reshape(-1, 4), all_panels(*cut.sheet.grid).hinged
-    holding = np.bincount(tables.ravel(), (away < AT_HINGE).ravel())
+    holding = np.bincount(tables.ravel(), (away < AT_CORNER).ravel())
     for number, part in enumerate(cut.kept):
         if part is None or not len(part):
             continue
@@ -98,7 +98,7 @@ def test_that_what_stays_is_one_mechanism(cut: Trim) -> None:
     columns = cut.sheet.columns
     deployment, away = deploy(cut.sheet), reached(cut)
     tables = deployment.topology.panel_nodes.reshape(-1, 4)
-    holding = np.bincount(tables.ravel(), (away < AT_HINGE).ravel()) == 2
+    holding = np.bincount(tables.ravel(), (away < AT_CORNER).ravel()) == 2
     voids = deployment.topology.void_nodes.reshape(-1, 4)
     whole = np.flatnonzero(holding[voids].all(axis=1))
     # Voids whose four hinges stay, joined where they share one.

@@ -14,14 +14,15 @@ from kirigami_studio.fabricate.centred import LEAST_SHARE
 from kirigami_studio.fabricate.centres import void_hinges
 from kirigami_studio.fabricate.checks import check_plan
 from kirigami_studio.fabricate.cut_plan import CutPlan, largest_move, plan_cuts
-from kirigami_studio.fabricate.making_room import FACING_SPANS, with_room
+from kirigami_studio.fabricate.making_room import FACING_SPANS, ROUNDS, with_room
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import cut_table
-from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.mechanics.closing import closing
 from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.pipeline.redesign import Room
 from kirigami_studio.studio.as_cut import planned_sheet
 
 MakeDesign = Callable[..., Deployment]
@@ -56,6 +57,22 @@ def test_that_an_even_sheet_stays_nearly_a_square() -> None:
     assert facing_mm(made).min() >= FACING_SPANS * 0.52 - 3e-3
     (score,) = siou_of_many([made.outline(0.0)], Outline.from_points(design.outline(0.0)))
     assert score.iou_exact > 0.99
+
+
+def test_that_connectors_wider_than_all_cuts_are_long_are_refused_before_a_search(make_design: MakeDesign) -> None:
+    design, rounds = make_design(6, 6, seed=1, spread=0.2), []
+    table = cut_table(6, 6)
+    assert with_room(design, WIDTH, np.full(table.hinge_count, 15.0), table, (), lambda: rounds.append(1)) is design
+    assert not rounds
+    with pytest.raises(FabricationError, match="connector of 15 mm"):
+        planned(design, 15.0)
+
+
+def test_that_a_width_that_no_share_of_its_room_fits_is_tried_twice(make_design: MakeDesign) -> None:
+    design, rounds = make_design(6, 6, seed=1, spread=0.2), []
+    table = cut_table(6, 6)
+    assert with_room(design, WIDTH, np.full(table.hinge_count, 9.0), table, (), lambda: rounds.append(1)) is design
+    assert 0 < len(rounds) <= 2 * ROUNDS
 
 
 def test_that_sheets_with_room_are_left_alone(make_design: MakeDesign) -> None:
@@ -138,3 +155,10 @@ def test_that_planning_stops_when_it_is_asked_to_even_while_room_is_made(make_de
         )
     assert caught.value.code == "plan.stopped"
     assert next(questions, None) is None
+
+
+def test_that_room_for_a_fit_is_called_off_between_rounds(make_design: MakeDesign) -> None:
+    design, asked = make_design(6, 6, seed=1, spread=0.2), []
+    room = Room(WIDTH, 9.0)
+    assert room.made(design, lambda: bool(asked.append(1)) or len(asked) > 2) is design
+    assert len(asked) == 3

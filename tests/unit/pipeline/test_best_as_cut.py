@@ -11,6 +11,7 @@ import pytest
 from kirigami_studio.cli.design import _say_result
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.evaluate.trimming import Trim
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import deploy
@@ -143,6 +144,18 @@ def test_that_no_more_than_four_designs_get_pieces_for_the_sake_of_their_match(p
     looks = {one: pieces(0.97, one.score.iou_exact) for one in pinned_run.candidates}
     _, seen = ranked(pinned_run, looks)
     assert seen == [0, 1, 2, 3]
+
+
+def test_that_a_cover_is_weighed_by_what_stays_of_it(pinned_run: Result) -> None:
+    whole, cover = (replace(one, index=place) for place, one in enumerate(pinned_run.candidates[:2]))
+    sheet, phi, pose = cover.sheet, cover.score.phi, cover.score.transform
+    nothing = np.zeros((0, 2))
+    trim = Trim(sheet, phi, pose, 0.1, True, (nothing, *[None] * 15), 0.955, 0.7, 0.1)
+    cover = replace(cover, trim=trim, score=replace(cover.score, iou_exact=0.7))
+    run = replace(pinned_run, candidates=(whole, cover))
+    found, seen = ranked(run, {whole: pieces(0.972, whole.match), cover: pieces(0.99, cover.match)})
+    assert seen == [0, 1] and found.best is cover
+    assert found.ranking.made_match(cover) == pytest.approx(0.99)
 
 
 def test_that_pieces_that_hardly_miss_anything_are_taken_at_once(pinned_run: Result) -> None:

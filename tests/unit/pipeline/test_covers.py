@@ -11,13 +11,14 @@ from shapely.geometry import Polygon
 from kirigami_studio.cli.design import candidates_json, summary
 from kirigami_studio.evaluate.candidate import Candidate, Family, Origin
 from kirigami_studio.fabricate.material import Construction
+from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.outlines.starts import no_closed_sheet_shows, start_shape
 from kirigami_studio.outlines.turning import sides_needed
 from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.fit_again import fit_again
-from kirigami_studio.pipeline.redesign import refitted
+from kirigami_studio.pipeline.redesign import COVER_EVENNESS, covered, refitted, trimmed
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, needs_cover
 from kirigami_studio.pipeline.variety import look_alikes
@@ -26,6 +27,7 @@ from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.cutting import span_mm
 from kirigami_studio.studio.designing import closed_limit, first_of_families, limit_of, why_covered
 from kirigami_studio.studio.verdict import look_at
+from tests.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +85,24 @@ def test_that_a_shape_that_closed_sheets_show_has_none(run: Result) -> None:
     assert not needs_cover(request, [replace(well, score=replace(well.score, feasible=True, iou_exact=0.971))])
     badly = [replace(well, score=replace(well.score, feasible=True, iou_exact=0.969))]
     assert needs_cover(request, badly) and not needs_cover(replace(request, polish=5), badly)
+
+
+def test_that_even_panels_count_more_in_a_cover_than_in_a_whole_sheet(
+    run: Result, keyhole: Outline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    closed = next(one for one in run.candidates if one.family is Family.CLOSED)
+    weights: list[float] = []
+
+    def fit(*arguments: object, even: float, **more: object) -> None:
+        weights.append(even)
+        raise KirigamiError("trim.nothing_left")
+
+    monkeypatch.setattr("kirigami_studio.pipeline.redesign.fit_cover", fit)
+    for made in (covered, trimmed):
+        more = {"even": run.request.even} if made is covered else {}
+        with refused(KirigamiError, "trim.nothing_left"):
+            made(closed, keyhole, run.request.keep, lambda: False, **more)
+    assert weights == [COVER_EVENNESS * run.request.even, 0.0] and weights[0] > 2.0 * run.request.even > 0.0
 
 
 @pytest.mark.parametrize(("name", "sides"), [("heart", 2), ("cross", 4), ("clover", 4), ("gear", 5), ("puzzle", 7)])

@@ -25,10 +25,10 @@ def random_nodes(grid: tuple[int, int]) -> tuple[Sheet, np.ndarray]:
 def test_that_the_uniform_sheet_costs_nothing_and_areas_count_by_their_variation(monkeypatch) -> None:
     sheet, nodes = random_nodes((5, 6))
     term = EvenPanels.of(sheet)
-    assert abs(term.value(deploy(Sheet.uniform(5, 6)).compact)) < 1e-24
+    assert abs(term.at(deploy(Sheet.uniform(5, 6)).compact).value) < 1e-24
     monkeypatch.setattr(even_panels, "EDGES", 0.0)
     monkeypatch.setattr(even_panels, "AREAS", 1.0)
-    assert np.isclose(EvenPanels.of(sheet).value(nodes), evenness(deploy(sheet)).area_cv ** 2)
+    assert np.isclose(EvenPanels.of(sheet).at(nodes).value, evenness(deploy(sheet)).area_cv ** 2)
 
 
 def test_that_pull_and_curvature_are_the_derivatives() -> None:
@@ -36,12 +36,12 @@ def test_that_pull_and_curvature_are_the_derivatives() -> None:
     term = EvenPanels.of(sheet)
     step, direction = 1e-5, np.random.default_rng(6).normal(size=nodes.shape)
     ahead, behind = nodes + step * direction, nodes - step * direction
-    slope = (term.value(ahead) - term.value(behind)) / (2 * step)
-    assert np.isclose(slope, np.sum(term.pull(nodes) * direction), rtol=1e-6)
+    slope = (term.at(ahead).value - term.at(behind).value) / (2 * step)
+    assert np.isclose(slope, np.sum(term.at(nodes).pull() * direction), rtol=1e-6)
     # Where all panels have the areas that they should have, Gauss-Newton is exact.
     uniform = deploy(Sheet.uniform(4, 5)).compact
-    change = (term.pull(uniform + step * direction) - term.pull(uniform - step * direction)) / (2 * step)
-    product = term.curvature(uniform) @ direction.T.ravel()
+    change = (term.at(uniform + step * direction).pull() - term.at(uniform - step * direction).pull()) / (2 * step)
+    product = term.at(uniform).curvature() @ direction.T.ravel()
     np.testing.assert_allclose(product.reshape(2, -1).T, change, atol=1e-6)
 
 

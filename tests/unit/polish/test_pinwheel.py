@@ -10,6 +10,7 @@ import pytest
 
 from kirigami_studio.evaluate.evenness import evenness
 from kirigami_studio.evaluate.pins import GAP_ROUNDING, checkerboard, least_pin_distance, pin_distances, void_gaps
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
@@ -85,7 +86,9 @@ def test_that_a_fit_keeps_necks_beside_notches_and_corners_at_pins() -> None:
 def test_that_pins_keep_apart_where_no_sheet_near_by_keeps_all_corners(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pin_room_module, "SHARPEST", 0.999)
     start = pinwheel(Sheet.uniform(4, 4), GAP, 1)
-    fit = polish(start, load("star"), steps=6, least_gap=GAP, free_rim=True)
+    # In one of the two poses that match equally well: rounding would choose.
+    pose = Similarity(0.190854, 0.198953, (-0.538890, 0.301300))
+    fit = polish(start, load("star"), steps=6, pose=pose, least_gap=GAP, free_rim=True)
     assert pin_room(deploy(fit.sheet).compact, 4, 4, GAP).spare.min() < -0.01 and keeps(fit.sheet)
 
 
@@ -148,8 +151,8 @@ def test_that_pinned_sheets_have_turns_and_no_mirrors() -> None:
 def test_that_even_panels_of_a_pinwheel_are_those_of_the_uniform_pinwheel() -> None:
     model = pinwheel(Sheet.uniform(6, 6), GAP, 1)
     term, nodes = EvenPanels.of(Sheet.uniform(6, 6), model), deploy(model).compact
-    assert term.value(nodes) == pytest.approx(0.0, abs=1e-20) and np.abs(term.pull(nodes)).max() < 1e-15
-    assert EvenPanels.of(Sheet.uniform(6, 6)).value(nodes) > 0.01
+    assert term.at(nodes).value == pytest.approx(0.0, abs=1e-20) and np.abs(term.at(nodes).pull()).max() < 1e-15
+    assert EvenPanels.of(Sheet.uniform(6, 6)).at(nodes).value > 0.01
 
 
 def test_that_what_ratios_prefer_is_the_same_of_a_pinwheel_as_of_its_folded_field() -> None:

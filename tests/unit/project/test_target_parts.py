@@ -202,3 +202,10 @@ def test_that_a_file_of_more_parts_than_a_target_can_have_is_refused_unread(lett
             archive.writestr(f"part-{number}-design.json", b"")
     with refused(ProjectError, "project.damaged"):
         load(path)
+
+
+def test_that_parts_of_one_shape_and_size_are_twins_wherever_they_lie(dot, pentagon) -> None:
+    moved = Outline.from_points(np.roll(dot.points, 5, axis=0) * max(dot.size) / np.ptp(dot.points), "copy", unit="mm")
+    larger = Outline.from_points(9.0 * dot.points, "larger", unit="mm")
+    pieces = [(dot, (0.0, 0.0)), (pentagon, (9.0, 0.0)), (moved, (50.0, 3.0)), (larger, (0.0, 70.0)), (dot, (9.0, 9.0))]
+    assert target_parts.twins(parts_as_cut(set_parts(Document(), pieces).document)) == (0, 1, 0, 3, 0)

@@ -22,5 +22,6 @@ def test_that_a_run_is_timed_from_its_start_to_its_first_design_and_its_end(monk
     grid, first, whole = (figures[name] for name in ("grid_s", "first_s", "all_s"))
     assert isinstance(grid, float) and isinstance(first, float) and isinstance(whole, float)
     assert 0.0 < grid < first < whole
+    assert isinstance(figures["processor_s"], float) and figures["processor_s"] > 0.0
     assert figures["iou_exact"] == result.best.score.iou_exact
     assert figures["panel_area_cv"] == result.best.score.evenness.area_cv

@@ -1,0 +1,98 @@
+"""Covers on pins: sheets over a target whose panels in its notches are given up."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.pins import GAP_ROUNDING
+from kirigami_studio.foundation.steps import never
+from kirigami_studio.outlines.outline import Outline
+from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.rank import Ranking
+from kirigami_studio.pipeline.redesign import refitted
+from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.tasks import PinnedCoverTask
+from kirigami_studio.polish.covering import EASY_TURN
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.studio.assembling import assembled
+from kirigami_studio.studio.designing import gap_of, request_for, wants_covers_on_pins
+from kirigami_studio.studio.verdict import CloseLook, look_at
+
+PLYWOOD = FabricationSettings(material="plywood-co2", width_mm=240.0)
+
+
+@pytest.fixture(scope="module")
+def clover() -> Outline:
+    return load("clover")
+
+
+@pytest.fixture(scope="module")
+def request_of_clover(clover: Outline) -> Request:
+    return request_for(clover, DesignSettings((8, 8), auto_grid=False, k=8), PLYWOOD)
+
+
+@pytest.fixture(scope="module")
+def cover(request_of_clover: Request) -> Candidate:
+    found = PinnedCoverTask(8, 0.0, None, 1, EASY_TURN).carry_out(request_of_clover, never).candidate
+    assert found is not None
+    return found
+
+
+@pytest.fixture(scope="module")
+def look(cover: Candidate, clover: Outline) -> CloseLook:
+    return look_at(cover, PLYWOOD, clover)
+
+
+def test_that_pieces_of_a_cover_show_notches_that_whole_sheets_fill(
+    request_of_clover: Request, cover: Candidate, clover: Outline, look: CloseLook
+) -> None:
+    ranking = Ranking.of(request_of_clover)
+    assert cover.origin is Origin.COVERED and cover.trim is not None and cover.trim.given_up
+    assert ranking.pins_apart(cover) and look.refusal is None
+    figures = assembled(cover, PLYWOOD, clover, only_whole=True).report.figures
+    assert figures.match > 0.95  # the best of 32 fits to the target itself: 0.90
+    assert figures.flat_match > 0.87
+    assert figures.overlap_mm2 <= 0.01
+
+
+def test_that_the_match_of_a_cover_as_made_is_that_of_its_pieces(
+    request_of_clover: Request, cover: Candidate, clover: Outline, look: CloseLook
+) -> None:
+    ranking = replace(Ranking.of(request_of_clover), losses={cover: look.loss})
+    match = assembled(cover, PLYWOOD, clover, only_whole=True).report.figures.match
+    assert ranking.made_match(cover) == pytest.approx(match)
+
+
+def test_that_a_cover_on_pins_keeps_them_apart_when_it_is_fitted_again(
+    request_of_clover: Request, cover: Candidate, clover: Outline
+) -> None:
+    again = refitted(
+        cover,
+        clover,
+        request_of_clover.prefer,
+        (),
+        lambda: request_of_clover.keep,
+        never,
+        free_rim=True,
+        width_mm=240.0,
+        least_gap_mm=gap_of(PLYWOOD),
+    ).candidate
+    assert again.origin is Origin.COVERED
+    assert again.least_gap >= request_of_clover.least_gap - GAP_ROUNDING
+
+
+def test_that_covers_on_pins_are_made_where_pieces_miss_the_target(
+    request_of_clover: Request, cover: Candidate
+) -> None:
+    def result(match: float, **changes: bool) -> Result:
+        request = replace(request_of_clover, **changes)
+        return Result(request, (cover,), 1, 0.0).ranked_as_cut({}, {}, {cover: cover.match - match})
+
+    assert wants_covers_on_pins(result(0.94)) and not wants_covers_on_pins(result(0.96))
+    assert not wants_covers_on_pins(result(0.94, upright=False))  # printed: pieces lie in one plane
+    assert not wants_covers_on_pins(result(0.94, covers=False))
