@@ -261,7 +261,7 @@ class GeneratorRow(MethodRow):
 
 @dataclass(frozen=True, slots=True)
 class GeneratorFigures:
-    """The tables by family, and what their runs share; ``weights`` are SHA-256, ``trained`` records, by generator."""
+    """Tables by family; SHA-256 of the weights, and their training, by generator."""
 
     settings: dict[str, object]
     seeds: tuple[int, ...]

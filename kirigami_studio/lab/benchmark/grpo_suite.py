@@ -30,7 +30,7 @@ from kirigami_studio.lab.benchmark.generator_table import (
     mean_distance,
     score_record,
 )
-from kirigami_studio.lab.benchmark.match_table import MatchRow, match_figures
+from kirigami_studio.lab.benchmark.match_table import MatchRow, floor_figures, match_figures
 from kirigami_studio.lab.benchmark.run_store import Record, RunStore, group_means, mean_of, values_of
 from kirigami_studio.lab.fabricability import TRIAL, Fabricability, fabricability
 from kirigami_studio.lab.trained_weights import load_weights, variants_about
@@ -335,8 +335,7 @@ def _table(
             beside = None if control is None else _Sampled.of(records[control], start.records, numbers)
             rows.append(_row(run.reward, one.calls, own, start, beside, numbers, seeds))
         starts.setdefault(run.start, {})[run.name] = tuple(rows)
-    floors = (mean_of(first, name) for name in ("uniform_siou", "uniform_siou_released", "uniform_iou"))
-    return SnapshotTable(targets, *floors, starts)
+    return SnapshotTable(targets=targets, starts=starts, **floor_figures(first))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

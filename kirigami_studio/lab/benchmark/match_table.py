@@ -65,6 +65,11 @@ def match_figures(records: Sequence[Record], numbers: Sequence[int], seeds: Sequ
     }
 
 
+def floor_figures(records: Sequence[Record]) -> dict[str, float]:
+    """Mean match of the uniform sheet by our measure, the released one, and exactly, 0..1."""
+    return {name: mean_of(records, name) for name in ("uniform_siou", "uniform_siou_released", "uniform_iou")}
+
+
 def success_share(records: Sequence[Record]) -> float:
     """Share of samples with sIoU >= 0.85 and a feasible design (paper, Sec. 3.1)."""
     return float(np.mean((values_of(records, "siou") >= SUCCESS_SIOU) & (values_of(records, "feasible") > 0.0)))
@@ -72,7 +77,7 @@ def success_share(records: Sequence[Record]) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MethodRow(MatchRow):
-    """A row that is told beside the uniform sheet.
+    """A row beside the uniform sheet.
 
     Attributes
     ----------
@@ -114,8 +119,7 @@ class FamilyTable(Generic[RowT]):
     @classmethod
     def of(cls, records: Sequence[Record], targets: int, rows: dict[str, RowT]) -> FamilyTable[RowT]:
         """The table of records that have the uniform sheet's figures."""
-        floors = (mean_of(records, name) for name in ("uniform_siou", "uniform_siou_released", "uniform_iou"))
-        return cls(targets, *floors, rows)
+        return cls(targets=targets, rows=rows, **floor_figures(records))
 
     def sentences(self) -> Iterator[str]:
         """The table for people."""

@@ -7,11 +7,13 @@ import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Protocol, TypeVar
 
 import numpy as np
 
+import kirigami_studio
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
 from kirigami_studio.foundation.files import folder_of_one_writer, read_at_most
@@ -20,6 +22,8 @@ from kirigami_studio.outlines.outline import Outline
 
 #: Largest file of runs that is read (bytes).
 LARGEST_FILE = 256 * 2**20
+#: Packages that compute no record: faces, files, and texts about finished figures.
+NOT_COMPUTING = frozenset(("gui", "cli", "api", "studio", "project", "export", "report", "demonstrations"))
 #: What a suite tells its runs by, such as method, family, seed and target.
 Key = tuple[str | int, ...]
 Record = dict[str, object]
@@ -39,7 +43,8 @@ Run = TypeVar("Run", bound=Keyed)
 class RunStore:
     """Records of finished runs by key.
 
-    The first line of the file has the settings that all of them share.  What a killed process left half written at the
+    The first line of the file has the settings that all of them share, and a digest of the code that computes them, so
+    that records of other code are not mixed with new ones.  What a killed process left half written at the
     end is dropped: that run is done again.
 
     Parameters
@@ -54,7 +59,7 @@ class RunStore:
         self.records: dict[Key, Record] = {}
         self._path = path
         # As they come back from a file: lists for tuples.
-        self._settings: object = json.loads(json.dumps(dict(settings)))
+        self._settings: object = json.loads(json.dumps({**settings, "code": code_digest()}))
 
     @classmethod
     @contextmanager
@@ -118,6 +123,17 @@ class RunStore:
                 os.fsync(stream.fileno())
         except OSError as error:
             raise ExportError("file.not_written", path=path, reason=error.strerror or str(error)) from error
+
+
+@cache
+def code_digest() -> str:
+    """First digits of the SHA-256 of all modules that records may depend on."""
+    root = Path(kirigami_studio.__file__).parent
+    found = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        if NOT_COMPUTING.isdisjoint(path.relative_to(root).parts):
+            found.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
+    return found.hexdigest()[:16]
 
 
 def target_key(target: Outline) -> str:

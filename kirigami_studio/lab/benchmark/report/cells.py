@@ -48,18 +48,18 @@ def points(paired: Figures | None, name: str, factor: float = 100.0, digits: int
 
 
 def is_earlier(figures: Figures) -> bool:
-    """Whether figures of a suite are from before the released code's measure was taken with ours."""
+    """Whether figures of a suite lack the released code's measure."""
     return any(table.get("uniform_siou_released") is None for table in figures["families"].values())
 
 
 def rows_of_older_weights(measured: Mapping[str, str]) -> list[str]:
-    """Return the bundled variants whose weights are no longer those that were measured, by SHA-256."""
+    """Bundled variants whose weights, by SHA-256, are not those measured."""
     bundled = {name: digest_of(name) for name in variants()}
     return [name for name, digest in measured.items() if bundled.get(name, digest) != digest]
 
 
 def start_of(start: str, settings: Figures) -> str:
-    """Name of the weights that a run of GRPO began with; bundled ones may have been trained anew since."""
+    """Name of the weights that a run of GRPO began with, bundled still or earlier."""
     variant = start.removeprefix("bundled ")
     if variant != start and rows_of_older_weights({variant: str(settings.get("start", ""))}):
         return f"an earlier {variant}"

@@ -21,7 +21,7 @@ from kirigami_studio.lab.benchmark.report.cells import (
 
 
 def generator_section(suites: Sequence[Figures], pictures: dict[str, bytes]) -> Iterator[str]:
-    """The paper's Table 2: one sample a target, and what other numbers of steps give; one suite after the other."""
+    """The paper's Table 2: one sample a target, and other numbers of steps, call by call."""
     yield "## Table 2: conditional generators"
     yield ""
     yield (
@@ -38,9 +38,8 @@ def generator_section(suites: Sequence[Figures], pictures: dict[str, bytes]) -> 
 
 def _generator_tables(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
     """The tables of one call of the suite, by family."""
-    shared = (
-        f"seeds {', '.join(map(str, figures['seeds']))}; distance and IS of {figures['settings']['k']} samples a target"
-    )
+    seeds, k = figures["seeds"], figures["settings"]["k"]
+    shared = f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}; distance and IS of {k} samples a target"
     notes = []
     if older := rows_of_older_weights(figures["weights"]):
         notes.append(

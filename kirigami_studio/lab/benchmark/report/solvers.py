@@ -1,4 +1,4 @@
-"""The parts of the report about solvers: Table 1, several runs or samples a target, and sizes of the grid."""
+"""Parts of the report about solvers: Table 1, best of several runs, sizes of the grid."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from kirigami_studio.lab.benchmark.report.cells import (
 
 
 def solver_section(suites: Sequence[Figures], _: dict[str, bytes]) -> Iterator[str]:
-    """The paper's Table 1: solvers, fit and sample at one cap of evaluations; one suite after the other."""
+    """The paper's Table 1: solvers, fit and sample at one cap of evaluations, call by call."""
     yield "## Table 1: solvers"
     yield ""
     for figures in suites:
@@ -58,10 +58,11 @@ def _solver_tables(figures: Figures) -> Iterator[str]:
     if is_earlier(figures):
         yield ""
         yield EARLIER
+        yield ""
 
 
 def best_of_k_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
-    """What more samples, fitted or not, and more runs of solvers give and cost."""
+    """Gain and cost of more samples, fitted or not, and of more runs of solvers."""
     yield "## Best of K"
     yield ""
     yield (

@@ -125,7 +125,7 @@ OPENING = (
     "*sIoU* is how much of a target a design covers in the pose that fits best, nothing left out: overlap by union. "
     "*As released* is the same as the paper's authors measure it in their released code, which drops what leaves the "
     "design's picture. *Uniform sheet* is the floor: a sheet whose ratios are all 1, which is no design at all. It "
-    "has most of the match already, and more of it as released, so a row says only how far it is above that floor.",
+    "matches most of a target already, and more of it as released: a row is worth what it has above that floor.",
     "",
     "Written by `kirigami-studio benchmark report --runs FOLDER --out FILE.md` from the JSON in the folder beside it.",
     "Numbers in brackets are the paper's.",

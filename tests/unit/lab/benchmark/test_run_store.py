@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
-from kirigami_studio.lab.benchmark.run_store import RunStore
+from kirigami_studio.lab.benchmark import run_store
+from kirigami_studio.lab.benchmark.run_store import RunStore, code_digest
 
 SETTINGS = {"grid": (4, 4), "evaluations": 7}
 
@@ -46,7 +47,7 @@ def test_that_nothing_but_a_half_written_first_line_is_a_fresh_start(tmp_path: P
     path.write_text('{"sett')
     with RunStore.opened(SETTINGS, path) as store:
         assert store.records == {}
-    assert json.loads(path.read_text()) == {"settings": {"grid": [4, 4], "evaluations": 7}}
+    assert json.loads(path.read_text()) == {"settings": {"grid": [4, 4], "evaluations": 7, "code": code_digest()}}
 
 
 def test_that_runs_of_other_settings_are_refused(tmp_path: Path) -> None:
@@ -58,8 +59,33 @@ def test_that_runs_of_other_settings_are_refused(tmp_path: Path) -> None:
     assert path.read_text().splitlines() == before
 
 
+def test_that_runs_of_other_code_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "runs.jsonl"
+    before = filled(path)
+    monkeypatch.setattr(run_store, "code_digest", lambda: "0" * 16)
+    with pytest.raises(KirigamiError) as caught, RunStore.opened(SETTINGS, path):
+        pass
+    assert caught.value.code == "benchmark.runs_differ"
+    assert path.read_text().splitlines() == before
+
+
+def test_that_the_digest_of_the_code_follows_modules_that_compute(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("evaluate/siou.py", "gui/window.py", "__init__.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("VALUE = 1\n")
+    monkeypatch.setattr(run_store.kirigami_studio, "__file__", str(tmp_path / "__init__.py"))
+    found = []
+    for changed in (None, "gui/window.py", "evaluate/siou.py"):
+        if changed:
+            (tmp_path / changed).write_text("VALUE = 2\n")
+        found.append(code_digest.__wrapped__())
+    assert found[0] == found[1] != found[2]
+
+
 @pytest.mark.parametrize(
-    "content", ["[]\n", "{}\n", "nonsense\n", '{"settings": {"grid": [4, 4], "evaluations": 7}}\n3\n']
+    "content", ["[]\n", "{}\n", "nonsense\n", json.dumps({"settings": {**SETTINGS, "code": code_digest()}}) + "\n3\n"]
 )
 def test_that_a_file_of_something_else_is_refused_and_kept(tmp_path: Path, content: str) -> None:
     path = tmp_path / "runs.jsonl"
