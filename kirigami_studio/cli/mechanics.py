@@ -12,6 +12,7 @@ import numpy as np
 from kirigami_studio.cli.console import print_json, say
 from kirigami_studio.cli.fabrication import overridden
 from kirigami_studio.cli.inputs import PROJECTS, read_sheets
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.strain import StrainFigure, Survival, strain_note, survival
 from kirigami_studio.foundation.errors import MechanicsError, UsageError
@@ -69,6 +70,7 @@ class _Cut:
     target: Outline | None
     phi: float  #: radians; at which the sheet is meant to show the target
     material: Material
+    pose: Similarity | None  #: Of the design at that angle over the target
 
 
 def _close_sheet(arguments: argparse.Namespace) -> int:
@@ -87,7 +89,7 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
     lap = None
     if cut.target is not None:
         jam_phi = found.jam_phi(tolerated)
-        lap = overlap(cut.deployment, found, width, cut.phi, jam_phi, cut.target, design=cut.design)
+        lap = overlap(cut.deployment, found, width, cut.phi, jam_phi, cut.target, design=cut.design, pose=cut.pose)
     load = loads(found, cut.material.yield_strain)
     breaks = breaking_phi(cut.material, found)
     judged = survival(cut.material, cut.sheet.connectors.width_mm, found.in_plane, found.out_of_plane)
@@ -120,13 +122,13 @@ def _close_sheet(arguments: argparse.Namespace) -> int:
 
 def _cut(arguments: argparse.Namespace) -> _Cut:
     """The sheet that the command line names, with the material, widths and kerf that apply."""
-    path, target, phi, kept = Path(arguments.source), None, 0.0, None
+    path, target, phi, pose, kept = Path(arguments.source), None, 0.0, None, None
     if path.suffix.lower() in PROJECTS:
         document = load(path)
         if (candidate := document.candidate) is None:
             raise MechanicsError("mechanics.no_design_chosen", path=path)
         deployment, saved = deploy(candidate.final_sheet), document.fabrication
-        target, phi = document.target, candidate.final_phi
+        target, phi, pose = document.target, candidate.final_phi, candidate.final_pose
         kept = None if candidate.trim is None else candidate.trim.kept
     else:
         named = list(read_sheets([arguments.source]))
@@ -137,7 +139,7 @@ def _cut(arguments: argparse.Namespace) -> _Cut:
     plan = plan_sheet(deployment, settings, kept)
     on_nodes = arguments.centres == "node"
     sheet = planned_sheet(deployment, plan, settings.width_mm, kept, on_nodes, arguments.young_gpa)
-    return _Cut(deployment, plan.cut_from(deployment), sheet, settings, target, phi, plan.material)
+    return _Cut(deployment, plan.cut_from(deployment), sheet, settings, target, phi, plan.material, pose)
 
 
 def _steps(cut: _Cut, found: Closing, gripped: bool) -> dict[str, object]:

@@ -20,7 +20,7 @@ from shapely.geometry.base import BaseGeometry
 from kirigami_studio.fabricate.cut_path import measured_line
 from kirigami_studio.fabricate.finished_sheet import SAME_LINE_MM, overlap_length, remaining_pieces
 from kirigami_studio.fabricate.slits import CutTable
-from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.left_corners import left_corners
@@ -89,9 +89,7 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
     FabricationError
         Not one part for each panel, or parts that do not hang together.
     """
-    corners = deployment.compact[deployment.topology.panel_nodes.reshape(-1, 4)]
-    if len(kept) != len(corners):
-        raise FabricationError("trimmed.panel_count", panels=len(corners), given=len(kept))
+    corners = deployment.compact[_panel_nodes(deployment, kept)]
     low, high = deployment.compact.min(axis=0), deployment.compact.max(axis=0)
     scale = width_mm / (high[0] - low[0])
     parts = [whole if part is None else part for part, whole in zip(kept, corners, strict=True)]
@@ -105,6 +103,14 @@ def kept_area(deployment: Deployment, kept: Sequence[FloatArray | None], width_m
     return areas[0]
 
 
+def _panel_nodes(deployment: Deployment, kept: Sequence[FloatArray | None]) -> IntArray:
+    """Corners (P, 4) of the panels, for as many kept parts."""
+    nodes: IntArray = deployment.topology.panel_nodes.reshape(-1, 4)
+    if len(kept) != len(nodes):
+        raise FabricationError("trimmed.panel_count", panels=len(nodes), given=len(kept))
+    return nodes
+
+
 def lost_hinges(deployment: Deployment, kept: Sequence[FloatArray | None], table: CutTable) -> tuple[int, ...]:
     """Hinges that a trimmed sheet has given up: one of their two panels does not reach them any more.
 
@@ -113,7 +119,7 @@ def lost_hinges(deployment: Deployment, kept: Sequence[FloatArray | None], table
     deployment, kept
         As for :func:`kept_area`.
     """
-    nodes = deployment.topology.panel_nodes.reshape(-1, 4)
+    nodes = _panel_nodes(deployment, kept)
     reached = left_corners(kept, deployment.compact[nodes])
     holding = np.bincount(nodes.ravel(), reached.ravel())[table.hinge_node]
     return tuple(np.flatnonzero(holding < 2).tolist())

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from kirigami_studio import __version__
-from kirigami_studio.cli.parser import all_commands
+from kirigami_studio.cli.parser import QUIET, all_commands
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.project.migrations import CURRENT_VERSION
 from kirigami_studio.project.picture_record import LARGEST_PICTURE
@@ -97,7 +97,8 @@ def test_that_versions_and_limits_on_the_page_are_those_of_the_program(page: str
 def test_that_the_command_line_page_names_every_command_and_no_option_that_there_is_not(repository: Path) -> None:
     text = (repository / "docs" / "command-line.md").read_text(encoding="utf-8")
     assert [one.name for one in all_commands() if one.name.split()[0] not in text] == []
-    known = {name for one in all_commands() for names, _ in one.options for name in names} | {"--help", "--version"}
+    known = {name for one in all_commands() for names, _ in one.options for name in names}
+    known |= {"--help", "--version", *QUIET[0]}
     known |= {f"--no-{name[2:]}" for name in known}
     theirs = {"--nproc-per-node", "--nthreads", "--nworkers", "--rcfile"}  # of torchrun and dask
     docs = repository / "docs"  # other pages tell of other programs' options, too, as that on releasing does

@@ -100,7 +100,7 @@ def test_that_a_grid_that_a_run_chose_by_trying_is_the_one_shown(
 def test_that_symmetry_is_a_choice_that_tells_what_the_target_has(heart: MainWindow, until: Until) -> None:
     box = heart.settings.symmetry
     assert [box.itemText(row) for row in range(box.count())] == ["Auto", "Off", "Mirror", "Turn"]
-    until(lambda: "has a mirror axis" in box.toolTip())
+    until(lambda: "with a mirror axis" in box.toolTip())
     assert "100.0 %" in box.toolTip()
     box.setCurrentIndex(2)
     box.activated.emit(2)

@@ -287,7 +287,8 @@ def test_that_a_check_with_its_design_judges_both_layers_together(
 
 
 def test_that_small_pictures_show_tiles_on_cloth(square: Document, made: Planned) -> None:
-    ((_, pieces),) = picturing((CutRequest.of(square),), never)
+    (pictured,) = picturing((CutRequest.of(square),), never)
+    pieces = pictured.pieces
     assert pieces is not None and len(pieces.layers) == 2 and made.layers is not None
     cloth, tiles = pieces.layers
     assert len(cloth) == 16 and len(tiles) == len(made.layers.assembly.pieces)

@@ -79,9 +79,10 @@ class CardDelegate(Cards):
         width = min(78, card.width() - 22 - MATCH_WIDTH)
         return QRect(card.right() - 9 - width, card.bottom() - TEXT_HEIGHT + 2, width, 20)
 
-    def buttons_at(self, picture: QRect) -> QPoint:
-        """At the lower right corner of the picture."""
-        return QPoint(picture.right() - 3, picture.bottom() - BUTTON - 1)
+    def buttons_at(self, picture: QRect) -> tuple[QPoint, QPoint]:
+        """One above the other at the lower right corner of the picture: the middle of a narrow card is free."""
+        reject = QPoint(picture.right() - 3 - BUTTON, picture.bottom() - BUTTON - 1)
+        return reject - QPoint(0, BUTTON + 2), reject
 
     def write(self, painter: QPainter, card: QRect, index: Index) -> None:
         candidate: Candidate = index.data(CANDIDATE_ROLE)

@@ -119,8 +119,8 @@ class Cards(QStyledItemDelegate):
         """Place of the mark of look-alikes in a cell of the list."""
 
     @abstractmethod
-    def buttons_at(self, picture: QRect) -> QPoint:
-        """Upper right corner of the buttons on a picture."""
+    def buttons_at(self, picture: QRect) -> tuple[QPoint, QPoint]:
+        """Upper left corners of the buttons on a picture: to pin and to reject."""
 
     # pictures --------------------------------------------------------------------------------------------------------
 
@@ -203,8 +203,7 @@ class Cards(QStyledItemDelegate):
 
     def button_boxes(self, cell: QRect) -> dict[CardButton, QRect]:
         """Places of the buttons in a cell of the list."""
-        corner = self.buttons_at(self.picture_of(card_of(cell)))
-        pin, reject = corner - QPoint(2 * BUTTON + 4, 0), corner - QPoint(BUTTON, 0)
+        pin, reject = self.buttons_at(self.picture_of(card_of(cell)))
         size = QSize(BUTTON, BUTTON)
         return {CardButton.PIN: QRect(pin, size), CardButton.REJECT: QRect(reject, size)}
 

@@ -28,7 +28,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.gallery.card_delegate import SIGNS
-from kirigami_studio.gui.gallery.cards import DOT, CardList, Cards, Index, alike_text, card_of
+from kirigami_studio.gui.gallery.cards import BUTTON, DOT, CardList, Cards, Index, alike_text, card_of
 from kirigami_studio.gui.gallery.compare_page import MOST
 from kirigami_studio.gui.gallery.gallery_model import (
     ALIKE_ROLE,
@@ -86,9 +86,10 @@ class TableCards(Cards):
         width = max(78, self._view.fontMetrics().horizontalAdvance(alike_text(index)) + 12)
         return QRect(card.right() - INSET - width, card.bottom() - BADGES - FIGURES + 1, width, 20)
 
-    def buttons_at(self, picture: QRect) -> QPoint:
-        """At the upper right corner of the pictures."""
-        return QPoint(picture.right(), picture.top() + 2)
+    def buttons_at(self, picture: QRect) -> tuple[QPoint, QPoint]:
+        """Side by side at the upper right corner of the pictures."""
+        reject = QPoint(picture.right() - BUTTON, picture.top() + 2)
+        return reject - QPoint(BUTTON + 4, 0), reject
 
     def tip_at(self, cell: QRect, place: QPoint, index: Index) -> str:
         """Badges have tooltips, too."""

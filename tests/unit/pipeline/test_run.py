@@ -254,9 +254,9 @@ def guided_worths(monkeypatch: pytest.MonkeyPatch, worth: dict[int, float]) -> t
 
 
 def test_that_fits_from_the_uniform_sheet_end_when_the_best_two_agree(monkeypatch: pytest.MonkeyPatch) -> None:
-    # A heart begins either way up, then the same in another way, and once more.
+    # A heart begins either way up, then the better way up in another way, until two agree.
     assert guided_worths(monkeypatch, {24: 0.97, 25: 0.9705})[0] == [24, 25]
-    assert guided_worths(monkeypatch, {24: 0.97, 25: 0.972, 26: 0.965, 27: 0.9725})[0] == [24, 25, 26, 27]
+    assert guided_worths(monkeypatch, {24: 0.97, 25: 0.972, 26: 0.965, 27: 0.9725})[0] == [24, 25, 27]
 
 
 def test_that_a_pose_that_is_left_behind_is_not_tried_another_way(monkeypatch: pytest.MonkeyPatch) -> None:

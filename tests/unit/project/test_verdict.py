@@ -197,7 +197,7 @@ def test_that_four_questions_have_an_answer_each(design: Candidate, ready: Asses
         }.items()
     }
     assert (told["from"], told["jam_from"]) == ("simulation", "simulation")
-    assert 0.0 <= float(str(told["jam_deg"])) < 2.0 and told["match"] == 1.0
+    assert 0.0 <= float(str(told["jam_deg"])) < 2.0 and told["match"] == pytest.approx(1.0)
     unseen = judge(design, ready.plan, ready.report, None)
     assert unseen.is_estimate and unseen.words == "Not checked yet"
     states = [answer.state for answer in unseen.answers]
