@@ -538,7 +538,7 @@ def one_sheet(cut: FabricationSettings) -> FabricationSettings:
 
 
 def any_sheet(cut: FabricationSettings) -> FabricationSettings:
-    """What matters to all designs: where they open to one size, each has a width of its own."""
+    """Settings of a sheet without the width of one design, where all open to one size."""
     settings = one_sheet(cut)
     return settings if settings.opened_mm is None else replace(settings, width_mm=settings.opened_mm)
 

@@ -96,7 +96,7 @@ class SystemFileDialogs:
 
     @property
     def _first_shown(self) -> str:
-        """The folder where something is to be written: of the file before it, or of what was opened."""
+        """The folder of the file that was written last, or else opened."""
         return self._written or self._opened
 
     def _saver(self, title: str, proposal: str, filters: list[str]) -> QFileDialog:
