@@ -62,7 +62,7 @@ class Places:
     def save(self, proposal: str) -> Path | None:
         return self.saved
 
-    def export(self, proposal: str) -> Path | None:
+    def export(self, proposal: str, to_folder: bool = False) -> Path | None:
         return self.cut
 
     def picture(self, proposal: str) -> Path | None:

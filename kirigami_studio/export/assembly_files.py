@@ -188,7 +188,7 @@ class AssemblyJob:
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """Notes to read before cutting."""
+        """Notes on its beds, to read before cutting."""
         room = self.machine.reach_mm
         layers = Counter(bed.layer for bed in self.beds)
         several = [
@@ -196,10 +196,9 @@ class AssemblyJob:
             for layer, count in layers.items()
             if count > 1
         ]
-        note = find_profile(self.profile).note
         kiss = self.glued is not None and self.glued.cut is BoardCut.KISS
         kissed = [Note.of("backed.kiss_cut", layer=find_profile(self.profile).layer_name(Layer.KISS))] if kiss else []
-        return (*several, *kissed, *([] if note is None else [note]))
+        return (*several, *kissed)
 
     @cached_property
     def works(self) -> tuple[Work, ...]:
@@ -412,6 +411,8 @@ def _bed_verified(
     of_pieces = [found_pieces(content.strokes, bed, job.allowed_mm, known) for content in contents]
     findings = (*found, *agreed(contents, [one for one, _ in of_pieces]))
     work = job.works[job.beds.index(bed)]
+    # A project is for LightBurn alone, whose layers have names: a profile's note is on DXF and SVG.
+    note = None if path.suffix.lower() == ".lbrn2" else find_profile(job.profile).note
     verification = Verification(
         path=path,
         ok=all(finding.ok for finding in findings),
@@ -421,7 +422,7 @@ def _bed_verified(
         seconds_low=work.times.low,
         seconds_high=work.times.high,
         findings=findings,
-        warnings=job.notes,
+        warnings=job.notes if note is None else (*job.notes, note),
     )
     return verification, of_pieces[-1][1]
 

@@ -116,7 +116,7 @@ class FittedAgain:
 class KnownAsCut:
     """What a run has found out about designs as cut, which holds as long as they are cut that way."""
 
-    sheet: FabricationSettings  #: how the designs are cut, see :func:`one_sheet`
+    sheet: FabricationSettings  #: how the designs are cut, see :func:`any_sheet`
     jam_phi: Mapping[Candidate, float]  #: radians
     refusals: Mapping[Candidate, Note]
     losses: Mapping[Candidate, float]  #: as :class:`~kirigami_studio.pipeline.rank.Ranking` has them
@@ -132,7 +132,7 @@ class KnownAsCut:
             for candidate, one in result.as_cut.items()
             if isinstance(one, AsCut) and one.source is Source.SIMULATION
         }
-        return cls(one_sheet(cut), result.jam_phi, result.refusals, result.losses, found)
+        return cls(any_sheet(cut), result.jam_phi, result.refusals, result.losses, found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -508,7 +508,7 @@ def ranking_of(document: Document, known: KnownAsCut | None = None) -> Ranking:
     """What the document's settings, sheet and material put first, with what is known of designs that are cut so."""
     settings, cut = document.settings, document.fabrication
     ranking = Ranking(settings.regular, cut.width_mm, sizes_of(cut)[0], gap_of(cut))
-    if known is None or known.sheet != one_sheet(cut):
+    if known is None or known.sheet != any_sheet(cut):
         return ranking
     return replace(ranking, jam_phi=known.jam_phi, refusals=known.refusals, losses=known.losses)
 
@@ -535,6 +535,12 @@ def one_sheet(cut: FabricationSettings) -> FabricationSettings:
         engrave=plain.engrave,
         board_cut=plain.board_cut,
     )
+
+
+def any_sheet(cut: FabricationSettings) -> FabricationSettings:
+    """Settings of a sheet without the width of one design, where all open to one size."""
+    settings = one_sheet(cut)
+    return settings if settings.opened_mm is None else replace(settings, width_mm=settings.opened_mm)
 
 
 def decoding(candidates: tuple[Candidate, ...], cancel: Cancel) -> Iterator[Decoded]:

@@ -52,6 +52,7 @@ class PathAnswers:
     def __init__(self) -> None:
         self.answer: Path | None = None
         self.proposals: list[str] = []
+        self.to_folders: list[bool] = []
 
     def open(self, wanted: FileToOpen) -> Path | None:
         return self.answer
@@ -60,8 +61,9 @@ class PathAnswers:
         self.proposals.append(proposal)
         return self.answer
 
-    def export(self, proposal: str) -> Path | None:
+    def export(self, proposal: str, to_folder: bool = False) -> Path | None:
         self.proposals.append(proposal)
+        self.to_folders.append(to_folder)
         return self.answer
 
     def picture(self, proposal: str) -> Path | None:

@@ -50,6 +50,17 @@ def test_that_every_style_order_and_profile_is_on_offer(options: MainWindow) -> 
     assert [panel.profile.itemData(row) for row in range(panel.profile.count())] == list(PROFILES)
 
 
+def test_that_pieces_on_pins_are_asked_for_no_connectors_and_tabs(options: MainWindow) -> None:
+    panel = options.fabrication.options
+    of_sheets = (panel.style_, panel.tabs, panel.tab_mm)
+    options.services.fabrication.change(material="plywood-co2")
+    assert not any(field.isVisible() for field in of_sheets)
+    assert panel.order.isVisible() and panel.dxf_version.isVisible(), "files of pieces have both"
+    options.services.fabrication.change(material="card-co2")
+    assert all(field.isVisible() for field in of_sheets)
+    assert panel.style_.isEnabled() and not panel.tab_mm.isEnabled(), "no tabs, no length of them"
+
+
 @pytest.mark.parametrize(
     ("name", "value"),
     [("style_", ConnectorStyle.TEARDROP), ("order", CutOrder.SPREAD), ("profile", "lightburn"), ("dxf_version", "R12")],

@@ -12,7 +12,8 @@ from pytestqt.qtbot import QtBot
 
 from kirigami_studio.export.pdf import read_pages
 from kirigami_studio.export.registry import WRITERS
-from kirigami_studio.gui.files.file_dialogs import follow_filter
+from kirigami_studio.foundation.words import tr
+from kirigami_studio.gui.files.file_dialogs import FileToOpen, SystemFileDialogs, follow_filter
 from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.project import store
@@ -50,8 +51,48 @@ def test_that_the_menu_writes_each_kind(
     until(lambda: bool(designed.messages.messages))
     assert designed.messages.messages[-1].tone is Tone.DONE
     assert files.proposals == [f"heart-A1{extension}"]  # type: ignore[attr-defined]
+    assert files.to_folders == [False]  # type: ignore[attr-defined]
     written = (tmp_path / f"sheet{extension}").read_bytes().replace(b"\r\n", b"\n")
     assert written.startswith(FIRST_BYTES[extension])
+
+
+@pytest.fixture
+def places(window: MainWindow, monkeypatch: pytest.MonkeyPatch) -> list[QFileDialog]:
+    """Dialogs that ask for a place to write to, each accepted as it is."""
+    shown: list[QFileDialog] = []
+
+    def accept(dialog: QFileDialog) -> int:
+        shown.append(dialog)
+        return int(QFileDialog.DialogCode.Accepted)
+
+    monkeypatch.setattr(QFileDialog, "exec", accept)
+    return shown
+
+
+def test_that_files_are_written_beside_the_last_one_whatever_was_opened_since(
+    window: MainWindow, places: list[QFileDialog], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    drawings, cuts = tmp_path / "drawings", tmp_path / "cuts"
+    for folder in (drawings, cuts):
+        folder.mkdir()
+    ask = SystemFileDialogs(window)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(drawings / "logo.svg"), ""))
+    assert ask.open(FileToOpen.TARGET) == drawings / "logo.svg"
+    assert ask.export("logo.svg") == drawings / "logo.svg", "nothing was written before"
+    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(cuts / "set"))
+    assert ask.folder() == cuts / "set"
+    assert ask.open(FileToOpen.TARGET) == drawings / "logo.svg"
+    assert ask.export("logo.dxf") == cuts / "logo.dxf"
+
+
+def test_that_the_question_for_a_place_says_where_it_is_a_folder(window: MainWindow, places: list[QFileDialog]) -> None:
+    ask = SystemFileDialogs(window)
+    ask.export("heart.lbrn2")
+    ask.export("heart.lbrn2", to_folder=True)
+    assert [dialog.windowTitle() for dialog in places] == [
+        tr("Export {upper}", upper="LBRN2"),
+        tr("Export {upper} to a folder of this name", upper="LBRN2"),
+    ]
 
 
 def test_that_a_refused_plan_still_leaves_pictures(designed: MainWindow, until: Until) -> None:

@@ -216,6 +216,7 @@ def test_that_a_heart_in_plywood_is_files_after_four_actions(
     maker.press("Ctrl+E")
     until(lambda: any(tmp_path.rglob("layer-1*")))
     assert maker.actions == 4
+    assert files.to_folders == [True], "the question for a place says that it is one of several files"  # type: ignore[attr-defined]
 
 
 def test_that_the_sheet_is_shown_on_the_bed_of_its_machine(designed: MainWindow) -> None:

@@ -45,8 +45,11 @@ class FileDialogs(Protocol):
     def save(self, proposal: str) -> Path | None:
         """A place for the project."""
 
-    def export(self, proposal: str) -> Path | None:
-        """A place for an exported file; the proposal's extension is the kind that is offered first."""
+    def export(self, proposal: str, to_folder: bool = False) -> Path | None:
+        """A place for an exported file; the proposal's extension is the kind that is offered first.
+
+        With ``to_folder``, files of that kind are several, in a folder of that name.
+        """
 
     def picture(self, proposal: str) -> Path | None:
         """A place for the picture of a view, PNG or SVG."""
@@ -60,21 +63,23 @@ class SystemFileDialogs:
 
     def __init__(self, window: QWidget) -> None:
         self._window = window
-        self._folder = ""
+        self._opened = ""  #: folder of the file that was opened last
+        self._written = ""  #: folder of the file that was written last
 
     def open(self, wanted: FileToOpen) -> Path | None:
-        name, _ = QFileDialog.getOpenFileName(self._window, tr(wanted.value[0]), self._folder, wanted.filter)
-        return self._remembered(name)
+        name, _ = QFileDialog.getOpenFileName(self._window, tr(wanted.value[0]), self._opened, wanted.filter)
+        self._opened = str(Path(name).parent) if name else self._opened
+        return Path(name) if name else None
 
     def save(self, proposal: str) -> Path | None:
         dialog = self._saver(tr("Save project"), proposal, [tr(PROJECT_FILTER)])
         return self._answer(dialog)
 
-    def export(self, proposal: str) -> Path | None:
+    def export(self, proposal: str, to_folder: bool = False) -> Path | None:
         kind = kind_of(Path(proposal).suffix)
-        dialog = self._saver(
-            tr("Export {upper}", upper=kind.extension[1:].upper()), proposal, [each.filter for each in FILE_KINDS]
-        )
+        title = mark("Export {upper} to a folder of this name") if to_folder else mark("Export {upper}")
+        filters = [each.filter for each in FILE_KINDS]
+        dialog = self._saver(tr(title, upper=kind.extension[1:].upper()), proposal, filters)
         dialog.selectNameFilter(kind.filter)
         dialog.filterSelected.connect(lambda text: follow_filter(dialog, text))
         return self._answer(dialog)
@@ -86,12 +91,17 @@ class SystemFileDialogs:
         return self._answer(dialog)
 
     def folder(self) -> Path | None:
-        name = QFileDialog.getExistingDirectory(self._window, tr("Export to a folder"), self._folder)
+        name = QFileDialog.getExistingDirectory(self._window, tr("Export to a folder"), self._first_shown)
         return self._remembered(name)
+
+    @property
+    def _first_shown(self) -> str:
+        """The folder of the file that was written last, or else opened."""
+        return self._written or self._opened
 
     def _saver(self, title: str, proposal: str, filters: list[str]) -> QFileDialog:
         """A dialog that appends the extension itself, so that it asks before it overwrites the right file."""
-        dialog = QFileDialog(self._window, title, self._folder)
+        dialog = QFileDialog(self._window, title, self._first_shown)
         dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
         dialog.setFileMode(QFileDialog.FileMode.AnyFile)
         dialog.setNameFilters(filters)
@@ -108,7 +118,7 @@ class SystemFileDialogs:
     def _remembered(self, name: str) -> Path | None:
         if not name:
             return None
-        self._folder = str(Path(name).parent)
+        self._written = str(Path(name).parent)
         return Path(name)
 
 

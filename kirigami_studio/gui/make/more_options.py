@@ -13,7 +13,7 @@ from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.form import Form
-from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, pin_sizes
+from kirigami_studio.settings.fabrication import FabricationSettings, construction_for, is_pinned, pin_sizes
 
 
 class MoreOptions(QWidget):
@@ -51,11 +51,11 @@ class MoreOptions(QWidget):
         table.setHorizontalSpacing(8)
         table.setVerticalSpacing(6)
         cuts, files = self.cuts.captioned, self.files.captioned
-        table.addLayout(cuts("style"), 0, 0, 1, 2)
-        table.addLayout(cuts("order"), 0, 2, 1, 2)
-        table.addLayout(cuts("tabs"), 1, 0)
-        table.addLayout(cuts("tab_mm"), 1, 1)
-        table.addLayout(files("dxf_version"), 1, 2, 1, 2)
+        table.addLayout(cuts("order"), 0, 0, 1, 2)
+        table.addLayout(files("dxf_version"), 0, 2, 1, 2)
+        table.addLayout(cuts("style"), 1, 0, 1, 2)  # a row of its own, that pieces on pins have not
+        table.addLayout(cuts("tabs"), 1, 2)
+        table.addLayout(cuts("tab_mm"), 1, 3)
         table.addLayout(files("profile"), 2, 0, 1, 4)
         table.addLayout(cuts("copies"), 3, 0)
         table.addLayout(cuts("copy_gap_mm"), 3, 1)
@@ -95,6 +95,7 @@ class MoreOptions(QWidget):
             return
         self.files.show({"pin_mm": sizes.hole_mm, "ear_mm": sizes.ear_mm, "clearance_mm": sizes.clearance_mm})
         pinned = construction is Construction.PINNED
+        self.cuts.offer(("style", "tabs", "tab_mm"), not is_pinned(settings))  # sheets alone have connectors
         for names, offered in (
             (("fastener", "moved_by"), pinned),
             (("held_when",), settings.held_by is not HoldKind.NONE),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.sheet_size import cut_for
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.designing import one_sheet
+from kirigami_studio.studio.designing import any_sheet, one_sheet
 from kirigami_studio.studio.making import CutRequest, Estimated, MadePieces, Planned, estimating, simulating
 
 if TYPE_CHECKING:
@@ -188,9 +188,8 @@ class AsCutEstimates(QObject):
         self._timer.stop()
 
     def _cut(self) -> FabricationSettings:
-        """How designs are cut now, each at its own width where they open to one size."""
-        settings = one_sheet(self._session.document.fabrication)
-        return settings if settings.opened_mm is None else replace(settings, width_mm=settings.opened_mm)
+        """How designs are cut now."""
+        return any_sheet(self._session.document.fabrication)
 
     def _forget_outdated(self) -> None:
         """The sheet is cut otherwise: nothing is shown that was found out about another."""

@@ -21,7 +21,7 @@ from kirigami_studio.gui.window.services import Services
 from kirigami_studio.gui.window.unsaved_work import NEW_PROJECT, OTHER_PROJECT, PAIR, RECOVERED, SAMPLE, UnsavedWork
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import file_ending
-from kirigami_studio.studio.making import Motion
+from kirigami_studio.studio.making import Motion, Output, writes_layers
 from kirigami_studio.studio.projects import Leftover
 
 
@@ -109,7 +109,8 @@ class FileCommands(QObject):
         if self._services.session.stage is None:
             self._services.session.hint(tr("No design to export yet. Generate one first."))
             return
-        path = self._ask.export(f"{self._name}{ending}")
+        proposal, request = f"{self._name}{ending}", self._services.cutting.request
+        path = self._ask.export(proposal, request is not None and writes_layers(request, Output(Path(proposal))))
         if path is not None:
             self._services.exporter.export(path, motion)
 

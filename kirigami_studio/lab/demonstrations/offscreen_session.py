@@ -51,7 +51,7 @@ class PresetFiles:
     def save(self, proposal: str) -> Path | None:
         return self._out / "session.kiri"
 
-    def export(self, proposal: str) -> Path | None:
+    def export(self, proposal: str, to_folder: bool = False) -> Path | None:
         return self._out / Path(proposal).with_stem("cut").name
 
     def picture(self, proposal: str) -> Path | None:

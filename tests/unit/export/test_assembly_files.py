@@ -209,6 +209,15 @@ def test_that_every_profile_gets_files_that_read_back(assembly: Assembly, tmp_pa
         assert put_together(tmp_path / "out", ".dxf", 0.0).outline_mm < 1e-3, "a service allows for its kerf itself"
 
 
+def test_that_a_note_on_other_programs_is_not_on_projects_for_lightburn(assembly: Assembly, tmp_path: Path) -> None:
+    files = write_assembly(job_of(assembly, profile="lightburn"), tmp_path / "out", kinds=(".dxf", ".lbrn2"))
+    noted = {kind: set[str]() for kind in (".dxf", ".lbrn2")}
+    for one in files.verifications:
+        if one.path.suffix in noted:
+            noted[one.path.suffix] |= {note.code for note in one.warnings}
+    assert noted == {".dxf": {"profile.only_red_is_cut"}, ".lbrn2": set()}
+
+
 def test_that_old_programs_get_the_same_circles(assembly: Assembly, tmp_path: Path) -> None:
     write_assembly(job_of(assembly, dxf_version=DxfVersion.R12), tmp_path / "out", kinds=(".dxf",))
     document = ezdxf.readfile(tmp_path / "out" / "layer-1.dxf")

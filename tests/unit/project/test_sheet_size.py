@@ -11,15 +11,19 @@ import shapely
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines import silhouettes
+from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import cut_for, flat_width, set_opened_size, size_of, sized
 from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.studio.designing import KnownAsCut, ranking_of
 from tests.refusals import refused
 
 
@@ -55,6 +59,19 @@ def test_that_another_design_has_a_width_of_its_own_and_a_typed_width_stays() ->
     assert cut_for(document, document.candidates[1]).width_mm == other.fabrication.width_mm
     typed = edits.set_fabrication(other, width_mm=60.0).document
     assert sized(typed) is typed and sized(edits.choose(typed, 0).document).fabrication.width_mm == 60.0
+
+
+def test_that_findings_of_a_run_hold_for_designs_of_other_widths_that_open_to_one_size() -> None:
+    document = set_opened_size(designed(), 80.0).document
+    jams = {document.candidates[1]: Note.of("as_cut.nearly", jam_deg=10.0, phi_deg=0.0)}
+    assert document.target is not None
+    result = Result(Request(document.target), document.candidates, 2, 1.0, refusals=jams)
+    known = KnownAsCut.of(result, document.fabrication)
+    other = sized(edits.choose(document, 1).document)
+    assert other.fabrication.width_mm != document.fabrication.width_mm
+    assert ranking_of(other, known).refusals == jams
+    typed = edits.set_fabrication(other, width_mm=60.0).document
+    assert not ranking_of(typed, known).refusals, "another size, of which nothing was found"
 
 
 @pytest.mark.parametrize("phi", [0.0, 0.5, 1.2, 2.4])
