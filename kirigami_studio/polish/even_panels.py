@@ -143,7 +143,7 @@ class PanelPattern:
         entries, place = np.unique(
             np.concatenate([pairs, along_x, along_x + 2 * count * count + count]), return_inverse=True
         )
-        base: FloatArray = np.bincount(place[pairs.size :], np.tile(still.data, 2), entries.size)
+        base = np.bincount(place[pairs.size :], np.tile(still.data, 2), entries.size).astype(np.float64)
         row, column = np.divmod(entries, 2 * count)
         first = np.searchsorted(row, np.arange(2 * count + 1))
         return cls(base, column.astype(np.int32), first.astype(np.int32), place[: pairs.size])

@@ -236,8 +236,10 @@ def test_that_arrow_keys_walk_through_the_gallery(designed: MainWindow, qtbot: Q
 
 def test_that_a_card_tells_its_numbers_to_screen_readers(designed: MainWindow, designs: Document) -> None:
     model = designed.gallery.view.model_
+    line = model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
+    assert line.startswith(f"Design A1: match {100 * designs.candidates[0].match:.1f} %, ")
     text = model.data(model.index(0, 0), Qt.ItemDataRole.AccessibleDescriptionRole)
-    assert text == described(designs.candidates[0], "A1")
+    assert text.startswith(described(designs.candidates[0], "A1"))
     assert f"{100 * designs.candidates[0].score.siou:.2f} %" in str(text)
 
 
