@@ -50,10 +50,12 @@ def served(tmp_path_factory: pytest.TempPathFactory, repository: Path) -> tuple[
     program = StdioServerParameters(command=sys.executable, args=words, env=environment, cwd=root)
 
     async def talk() -> tuple[dict[str, Any], list[Any]]:
-        async with stdio_client(program) as (read, write), ClientSession(read, write) as session:
-            await session.initialize()
-            tools = {tool.name: tool for tool in (await session.list_tools()).tools}
-            return tools, [await session.call_tool(name, options) for name, options in CALLS]
+        # The client hands its standard error on, which is no file where a test before has captured it.
+        with (root / "errors.txt").open("w", encoding="utf-8") as errors:
+            async with stdio_client(program, errlog=errors) as (read, write), ClientSession(read, write) as session:
+                await session.initialize()
+                tools = {tool.name: tool for tool in (await session.list_tools()).tools}
+                return tools, [await session.call_tool(name, options) for name, options in CALLS]
 
     return folder, *anyio.run(talk)
 
