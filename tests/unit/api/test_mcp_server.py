@@ -51,7 +51,7 @@ def served(tmp_path_factory: pytest.TempPathFactory, repository: Path) -> tuple[
 
     async def talk() -> tuple[dict[str, Any], list[Any]]:
         # The client hands its standard error on, which is no file where a test before has captured it.
-        with (root / "errors.txt").open("w", encoding="utf-8") as errors:
+        with (tmp_path_factory.mktemp("errors") / "errors.txt").open("w", encoding="utf-8") as errors:
             async with stdio_client(program, errlog=errors) as (read, write), ClientSession(read, write) as session:
                 await session.initialize()
                 tools = {tool.name: tool for tool in (await session.list_tools()).tools}
