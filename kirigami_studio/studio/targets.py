@@ -427,4 +427,7 @@ def _symmetry_sentence(found: TargetSymmetry) -> str:
         return tr("Target with a mirror axis: {mirror:.1f} % alike mirrored.", **numbers)
     if turn >= TOLERANCE:
         return tr("Target that can be turned: {turn:.1f} % alike.", **numbers)
-    return tr("The target is not symmetric: {mirror:.1f} % alike mirrored, {turn:.1f} % turned ({least:.1f} % count).", **numbers)
+    return tr(
+        "The target is not symmetric: {mirror:.1f} % alike mirrored, {turn:.1f} % turned ({least:.1f} % count).",
+        **numbers,
+    )
