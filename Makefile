@@ -42,7 +42,7 @@ help:
 	@echo "make pairs   make the bundled designs from one shape to another: resources/pairs"
 	@echo "make pictures  make the pictures of README, guide and tutorials with the program"
 	@echo "make shapes  make docs/pictures/shapes.png: three states of the first design for every library silhouette"
-	@echo "make gallery  write the pages and pictures of docs/gallery, and design what is missing"
+	@echo "make gallery  draw the pictures of docs/gallery, and design what is missing"
 	@echo "make figures  draw the figures of docs/mathematics.md"
 	@echo "make animation  play and record two minutes of use: docs/pictures/session.mp4"
 	@echo "make notebook  play docs/first-design.ipynb and keep what its cells show"

@@ -1,18 +1,15 @@
-"""Make the gallery's pages and pictures: ``make gallery``.
+"""Make the gallery's projects and pictures: ``make gallery``.
 
-Every silhouette of the library, every pair and three pinned pieces become a page to share, which moves in a browser and
-holds its project, and a small picture of its opened sheet.  A page that is there is written again from the project in
-it: delete what is to be designed anew.
+Every silhouette of the library and three pinned pieces are designed where they have no project yet, and have a small
+picture of the opened sheet; so have the bundled pairs.  The site makes of each project a page that moves
+(``packaging/site_pages.py``).  Delete a project to have it designed anew.
 """
 
 from __future__ import annotations
 
 import argparse
-import base64
-import re
 from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from PIL import Image
@@ -42,29 +39,24 @@ def pinned_piece(target: str, start: str) -> ks.Design:
     return ks.design(ks.load_target(target), k=COUNT, start=start, **PLYWOOD).best
 
 
-def design_in(page: Path) -> ks.Design:
-    """The design of a page, with the settings of its project."""
-    inside = re.search(r'id="project">([^<]*)<', page.read_text(encoding="utf-8"))
-    if inside is None:
-        raise SystemExit(f"{page} holds no project: delete it.")
-    with TemporaryDirectory() as folder:
-        project = Path(folder) / "design.kiri"
-        project.write_bytes(base64.b64decode(inside[1]))
-        return ks.load_project(project).best
-
-
 def add(folder: Path, name: str, designed: Callable[[], ks.Design]) -> None:
-    """Write the page and the picture of one design, which is made where there is no page yet."""
+    """Write the project of one design where there is none yet, and its picture."""
     folder.mkdir(parents=True, exist_ok=True)
-    page, drawn = folder / f"{name}.html", folder / f"{name}.png"
-    design = design_in(page) if page.exists() else designed()
-    design.export(drawn)
-    with Image.open(drawn) as opened:
+    project = folder / f"{name}.kiri"
+    if not project.exists():
+        designed().save(project)
+    draw(ks.load_project(project).best, project.with_suffix(".png"))
+
+
+def draw(design: ks.Design, picture: Path) -> None:
+    """Write a small picture of the opened sheet."""
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    design.export(picture)
+    with Image.open(picture) as opened:
         small = opened.convert("RGB")
         small.thumbnail((SIDE, SIDE), Image.Resampling.LANCZOS)
-        small.quantize(COLOURS).save(drawn, optimize=True)
-    design.export(page)
-    print(f"{folder.name}/{name}: {design.iou:.3f}", flush=True)
+        small.quantize(COLOURS).save(picture, optimize=True)
+    print(f"{picture.parent.name}/{picture.stem}: match {design.match:.3f}", flush=True)
 
 
 def main() -> None:
@@ -73,7 +65,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=REPOSITORY / "docs" / "gallery")
     out: Path = parser.parse_args().out
     for path in sorted((REPOSITORY / "resources" / "pairs").glob("*.kiri")):
-        add(out / "pairs", path.stem.split("-", 1)[1], lambda path=path: ks.load_project(path).best)
+        draw(ks.load_project(path).best, out / "pairs" / f"{path.stem.split('-', 1)[1]}.png")
     for name in ks.target_names():
         add(out / "shapes", name, lambda name=name: library_sheet(name))
     for name, (target, start) in PINNED.items():

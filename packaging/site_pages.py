@@ -14,6 +14,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from latex2mathml.converter import convert
 from mkdocs.config.defaults import MkDocsConfig
@@ -22,6 +23,7 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 from pymdownx.slugs import slugify
 
+from kirigami_studio import load_project
 from kirigami_studio.cli.parser import about_group, all_commands, build_parser
 
 REPOSITORY = Path(__file__).resolve().parents[1]
@@ -42,7 +44,9 @@ PICTURES = {"guide": "resources/guide", "guide/de": "resources/guide/de", "model
 #: Made from the parser of the command line.
 COMMANDS = "command-line-options.md"
 LINK = re.compile(r"(?P<picture>!?)\[(?P<text>[^\]\n]*)\]\((?P<place>[^)\s#]*)(?P<anchor>#[^)\s]*)?\)")
-#: ``<!-- gallery: pairs -->`` stands for the pictures of a folder of ``docs/gallery``, each leading to its page.
+#: Galleries of the site -> where their projects lie; each project becomes a page that moves.
+GALLERIES = {"pairs": "resources/pairs", "pinned": "docs/gallery/pinned", "shapes": "docs/gallery/shapes"}
+#: ``<!-- gallery: pairs -->`` stands for the pictures of a gallery, each leading to its page.
 GALLERY = re.compile(r"^<!-- gallery: (?P<folder>[\w-]+) -->$", re.MULTILINE)
 #: ``<!-- README.md: Install -->`` stands for the text below that heading of the README.
 INCLUDED = re.compile(r"^<!-- (?P<file>[\w./-]+\.md): (?P<heading>[^>]+) -->$", re.MULTILINE)
@@ -72,7 +76,7 @@ def _named(entries: object) -> Iterator[str]:
 
 
 def on_files(files: Files, *, config: MkDocsConfig) -> Files:
-    """Add the pages and pictures from elsewhere, and the table of commands."""
+    """Add the pages and pictures from elsewhere, the table of commands, and the pages of the galleries."""
     pictures = {
         f"{place}/{path.name}": path
         for place, folder in PICTURES.items()
@@ -82,6 +86,10 @@ def on_files(files: Files, *, config: MkDocsConfig) -> Files:
     for place, path in {**pages, **pictures}.items():
         files.append(File.generated(config, place, abs_src_path=str(path)))
     files.append(File.generated(config, COMMANDS, content=commands_page()))
+    for gallery in GALLERIES:
+        for name, project in _projects(gallery).items():
+            place = f"gallery/{gallery}/{name}.html"
+            files.append(File.generated(config, place, content=_page_to_share(project, name)))
     return files
 
 
@@ -149,17 +157,28 @@ def _section(file: str, heading: str) -> str:
     return found[2]
 
 
-def _gallery(folder: str) -> str:
-    """Pictures of a folder of pages to share, of a page beside ``gallery``."""
-    pages = sorted((REPOSITORY / "docs" / "gallery" / folder).glob("*.html"))
-    if not pages:
-        raise PluginError(f"docs/gallery/{folder} has no pages: run 'make gallery'.")
+def _projects(gallery: str) -> dict[str, Path]:
+    """Names of the pages of a gallery, and the projects that they show."""
+    paths = sorted((REPOSITORY / GALLERIES[gallery]).glob("*.kiri"))
+    return {re.sub(r"^\d+-", "", path.stem): path for path in paths}
+
+
+def _gallery(gallery: str) -> str:
+    """Pictures of a gallery, of a page beside ``gallery``."""
     shown = (
-        f'<a href="gallery/{folder}/{page.name}"><img src="gallery/{folder}/{page.stem}.png" alt="" loading="lazy">'
-        f"{page.stem.replace('-', ' ').capitalize()}</a>"
-        for page in pages
+        f'<a href="gallery/{gallery}/{name}.html"><img src="gallery/{gallery}/{name}.png" alt="" loading="lazy">'
+        f"{name.replace('-', ' ').capitalize()}</a>"
+        for name in _projects(gallery)
     )
     return '<div class="gallery">\n' + "\n".join(shown) + "\n</div>"
+
+
+def _page_to_share(project: Path, name: str) -> bytes:
+    """The page of a project's design, as the program exports it."""
+    with TemporaryDirectory() as folder:
+        page = Path(folder) / f"{name}.html"
+        load_project(project).best.export(page)
+        return page.read_bytes()
 
 
 def _mathml(tex: str, block: bool) -> str:
