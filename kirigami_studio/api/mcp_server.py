@@ -70,7 +70,8 @@ class FolderTools:
         target: a library silhouette, a drawing or picture in the folder (.svg .dxf .png ...), or points [[x, y], ...],
         y up.  k: number of designs (8 take some ten seconds).  grid: [rows, columns], or auto.  regular: 0 for the best
         match to 1 for even panels.  start: shape of the flat sheet.  material: such as card-co2, film-uv, paper-hand.
-        Answers with the figures of the best designs: iou is the match of the panels, 1 at best; that of pieces on pins is in their verdict.
+        Answers with the figures of the best designs: iou is the match of the panels, 1 at best; that of pieces on pins
+        is in their verdict.
         """
         goal = self._inside(project, SUFFIX)
         found = design(

@@ -172,7 +172,10 @@ class Request(DesignChoices):
 
     @property
     def may_cover_pieces(self) -> bool:
-        """Whether covers may be made for pieces on pins that show the target badly."""
+        """Whether covers may be made for pieces on pins that show the target badly.
+
+        Only where layers lie on each other, of which pieces are cut one by one (``upright``); prints have one layer.
+        """
         return self.covers and self.fitted_starts > 0 and self.second is None and self.upright and self.phi == 0.0
 
     @property
