@@ -154,7 +154,7 @@ _ANSWERS = {
     (Question.FILES, AnswerState.GOOD): mark("files are right"),
     (Question.FILES, AnswerState.CARE): mark("files need a look"),
     (Question.FILES, AnswerState.BAD): mark("files are wrong"),
-    (Question.FILES, AnswerState.OPEN): mark("not exported yet"),
+    (Question.FILES, AnswerState.OPEN): mark("no cut file checked yet"),
 }
 #: Findings that answer a question; files have those of their reading, the material all others.
 _MATCH_FINDINGS = frozenset(
