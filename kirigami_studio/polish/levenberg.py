@@ -58,6 +58,8 @@ CORRECTED_GAIN = 0.25
 #: back to where it was, and looks after every step from there.  None of 1401 steps of runs for 5 shapes needed that;
 #: looking costs a tenth of a step.
 STEPS_UNSEEN = 6
+#: The second derivative of open junctions is found anew every so many steps: it takes a third of a step.
+OPENING_STEPS = 4
 #: Largest number of voids for which the second derivative of even panels at the uniform sheet is kept.
 LARGEST_KEPT = 400
 
@@ -276,6 +278,7 @@ class _Descent:
         self._seen, self._careful = (self.here, self.damping, 0), 0
         #: (V, V); second derivative of even panels: that of the uniform sheet, or of where the fit begins
         self.stiffness = stiffness
+        self._opening: FloatArray | None = None
 
     def turned_to(self, objective: Objective, bounds: ShapeBounds | None = None) -> _Descent:
         """Go on from here with another objective, within other bounds where some are given."""
@@ -285,7 +288,7 @@ class _Descent:
             state = np.concatenate([bounds.allowed(state[:-poses]), state[-poses:]])
         self.here = objective.look(state)
         self.damping = min(self.damping, FIRST_DAMPING)
-        self._seen = self.here, self.damping, self.steps
+        self._seen, self._opening = (self.here, self.damping, self.steps), None
         self.evaluations += 1
         return self
 
@@ -316,7 +319,9 @@ class _Descent:
         """
         slopes = self.objective.slopes(self.here, self._bounds.basis, self.stiffness)
         self.stiffness = slopes.stiffness
-        model = self.objective.quadratic(self.here, slopes)
+        if self._opening is None or self.steps % OPENING_STEPS == 0:
+            self._opening = self.objective.opening(self.here, slopes)
+        model = self.objective.quadratic(self.here, slopes, self._opening)
         self.evaluations += 1
         damped = Damped.of(model, self.damping, self._held(self.here.state[: -self._poses], model.gradient))
         stiffer, harden = 1.0, HARDEN

@@ -202,6 +202,10 @@ class OutlineModel:
         self.voids = rows * columns
         self.size = self.voids + (self._table.even.size if free_rim else 0)
         self._given = self._given_nodes(self._rim.positions)
+        self._straight: tuple[FloatArray, FloatArray] | None = None
+        if free_rim and start is None:
+            # Along straight sides mouths move by as much as their offsets: given nodes without any, and the way (R, 2).
+            self._straight = self._given_nodes(self._table.even), self._path.slopes(self._table.even)
         #: What long chords of a round start cost, where the rim is free.
         self.chords = Chords.of(self._path, start_weight) if free_rim else None
 
@@ -266,11 +270,21 @@ class OutlineModel:
 
     def _along(self, shape: FloatArray) -> FloatArray:
         """Derivative of the mouths' points by their offsets, (R, 2); none where the rim is not free."""
+        if self._straight is not None:
+            return self._straight[1]
         return self._path.slopes(self.positions(shape)) if self.free_rim else np.zeros((0, 2))
 
     def _given_nodes(self, positions: FloatArray) -> FloatArray:
         nodes = np.zeros((self.node_count, 2))
         nodes[self._table.node] = self._table.share @ self._path.anchors(positions)
+        return nodes
+
+    def _given_of(self, shape: FloatArray) -> FloatArray:
+        """Compact nodes (N, 2) of which only the given ones count."""
+        if self._straight is None:
+            return self._given_nodes(self.positions(shape)) if self.free_rim else self._given.copy()
+        nodes, along = self._straight[0].copy(), self._straight[1]
+        nodes[self._table.node] += self._share @ (shape[self.voids :, None] * along)
         return nodes
 
     def _pull(self, decoded: CompactLayout) -> FloatArray:
@@ -284,17 +298,16 @@ class OutlineModel:
     def decoded(self, shape: FloatArray) -> CompactLayout:
         """The compact sheet of a shape (S,)."""
         plan, h = self._plan, self._plan.h_count
-        given = self._given_nodes(self.positions(shape)) if self.free_rim else self._given
+        nodes = self._given_of(shape)
         x = np.power(10.0, shape[: self.voids])[plan.void]
         flat = np.zeros(2 * x.size + 1)
         np.divide(1.0, 1.0 + x, out=flat[1:-1:2])
         np.multiply(x, flat[1:-1:2], out=flat[:-1:2])
         entry, row, node = plan.to_given
-        known, each = np.zeros((x.size, 2)), flat[entry, None] * given[node]
+        known, each = np.zeros((x.size, 2)), flat[entry, None] * nodes[node]
         for axis in (0, 1):
             known[plan.resting, axis] = np.bincount(row, each[:, axis], plan.resting.size)
         at_h = plan.band.solution(plan.paths(flat), known[:h] + plan.h_on_v.times(flat, known[h:]))
-        nodes = given.copy()
         nodes[plan.free[:h]] = at_h
         nodes[plan.free[h:]] = plan.v_on_h.times(flat, at_h) + known[h:]
         return CompactLayout(shape, nodes, flat)
