@@ -437,16 +437,20 @@ class _Work:
         if whole:
             return
         best = max(SECOND_ROUND_LEAST, math.ceil(SECOND_ROUND * total))
-        left = math.ceil(SECOND_STEPS * (self.request.polish - FIRST_ROUND))
         places = {one.index: place for place, one in enumerate(self.found)}
         now = self.ranking.ranked(self.found[places[candidate.index]] for candidate in chosen)[:best]
         # What the first round has improved gets the steps that are left, others those of both rounds.
         near = self._near_first(now, MAY_WIN)
         again = [
-            PolishTask(one, left if one.polished else FIRST_ROUND + left)
+            PolishTask(one, self._second_steps if one.polished else FIRST_ROUND + self._second_steps)
             for one in (near if len(near) > SECOND_ROUND_SHOWN else now[:SECOND_ROUND_SHOWN])
         ]
         yield from self._polished(again, total, total + len(again))
+
+    @property
+    def _second_steps(self) -> int:
+        """Steps of a second round."""
+        return math.ceil(SECOND_STEPS * (self.request.polish - FIRST_ROUND))
 
     def _near_first(self, candidates: Iterable[Candidate], lacking: float) -> list[Candidate]:
         """Those candidates that lack no more worth than this of the first design so far."""
@@ -470,6 +474,7 @@ class _Work:
                 if part.candidate is not None:
                     self.found[places[task.candidate.index]] = part.candidate
                     yield CandidateImproved(part.candidate.index, part.candidate)
+                    self.watch.check(POLISHING.stopped, done, total)
             yield POLISHING.progress(done, total)
 
     def guide(self) -> Generator[Event]:
@@ -521,9 +526,10 @@ class _Work:
         return max(self.request.k, len(self.found))
 
     def finish(self) -> Iterator[Event]:
-        """Fit the best that differ once more, with the weights of the last steps."""
+        """Fit the best that differ once more, with the weights of the last steps, by all steps that are left."""
         chosen = self._near_first(worth_a_fit(self.found, self.ranking), MAY_COME_FIRST)[:FINISHED]
-        tasks = [PolishTask(candidate, self.request.polish) for candidate in chosen]
+        left = self.request.polish - FIRST_ROUND - self._second_steps
+        tasks = [PolishTask(candidate, left) for candidate in chosen]
         yield from self._replaced(chosen, tasks, FINISHING)
 
     def trim(self) -> Iterator[Event]:

@@ -23,7 +23,7 @@ from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
 from kirigami_studio.pipeline.redesign import Room, covered, kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape
+from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape, sparingly
 from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.polish.junctions import junction_weight
 from kirigami_studio.polish.levenberg import Fit, polish
@@ -97,11 +97,11 @@ class PolishTask:
 
     def _phases(self, even: float) -> tuple[FitPhase, ...]:
         if not even:
-            return (FitPhase(self.steps, least_gain=CONVERGED),)
+            return sparingly(FitPhase(self.steps, least_gain=CONVERGED))
         if self.last:
             weights = {"even": LAST_SHARE * even, "junctions": junction_weight(even)}
-            return (FitPhase(self.steps, LAST_TRUST, least_gain=CONVERGED, **weights),)
-        return (FitPhase(self.steps, FIRST_TRUST, FIRST_SHARE * even),)
+            return sparingly(FitPhase(self.steps, LAST_TRUST, least_gain=CONVERGED, **weights))
+        return sparingly(FitPhase(self.steps, FIRST_TRUST, FIRST_SHARE * even))
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,9 +51,6 @@ HARDEN = 2.0
 #: Corrections that follow a step with the same derivative, as long as each lowers the cost by this share.  On 80
 #: outlines of random fields this saves a tenth to a fifth of the decodings of ten steps at the same match.
 CORRECTIONS, WORTHWHILE_GAIN = 5, 0.01
-#: They follow only a step that lowered the cost by this share.  Of 1259 steps of runs for 5 shapes 1080 gained less;
-#: corrections lowered the cost by 0.010 of itself after these, by 0.15 after steps that gained 0.4 of it.
-CORRECTED_GAIN = 0.25
 #: Steps after which the whole way of a sheet that was clear of itself is looked at; where it no longer is, the fit goes
 #: back to where it was, and looks after every step from there.  None of 1401 steps of runs for 5 shapes needed that;
 #: looking costs a tenth of a step.
@@ -330,7 +327,7 @@ class _Descent:
             gain = self.here.cost - trial.cost
             if gain > 0.0 and self._may_be(trial):
                 agreement = gain / max(model.promised(step), 1e-30)
-                worthwhile = gain > CORRECTED_GAIN * self.here.cost
+                worthwhile = gain > self.objective.phase.corrected * self.here.cost
                 there = self._corrected(trial, slopes, damped, stiffer) if worthwhile else trial
                 unseen = self._guarded and self.steps >= self._careful
                 clear = unseen or self._is_clear(there)

@@ -50,6 +50,12 @@ TRUST = 0.005
 #: designs stays within 0.0002.  Where only the match counts it would take 0.0001 off an IoU of 0.9987.
 CONVERGED, SETTLED = 1e-4, 2e-3
 
+#: Corrections follow a step that lowered the cost by this share, and in runs, which take many short fits, by the
+#: second.  In 10 steps from the uniform sheet of 16 x 16 voids to 8 shapes corrections after every step reach a mean
+#: exact IoU of 0.9738, after steps that gained 0.02 0.9730, after those that gained 0.25 0.9633, by 5 and 27 % less
+#: processor time; in runs for a heart, a butterfly and a star first designs are as good with the second share.
+CORRECTED, SPARINGLY = 0.02, 0.25
+
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
@@ -79,6 +85,7 @@ class FitPhase:
     transport: float = 0.0  #: Weight of the transport map of the inside, see ``transport_map``
     least_gain: float = SETTLED  #: The phase ends with a step that lowers the cost by no more than this share
     junctions: float = 0.0  #: Weight of cuts that meet at shallow angles, see ``junctions``
+    corrected: float = CORRECTED  #: Corrections follow a step that lowers the cost by this share
 
 
 #: Nothing but the match and what the ratios prefer.
