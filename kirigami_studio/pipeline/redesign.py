@@ -221,6 +221,8 @@ def covered(
     even: float = 0.0,
     room: Room = NO_ROOM,
     least_gap: float = 0.0,
+    *,
+    notched: bool = True,
 ) -> Trimmed:
     """Make a cover of a candidate: a sheet over the target of which parts are cut away.
 
@@ -229,10 +231,12 @@ def covered(
     candidate, target, keep, cancel, locked, least_panel, room
         As for :func:`trimmed`.
     even : float
-        Weight of even panels in whole sheets; a cover that is cut out of one sheet is fitted with
+        Weight of even panels in whole sheets; a notched cover that is cut out of one sheet is fitted with
         :data:`COVER_EVENNESS` times as much.
     least_gap : float, unit cells
         How far apart pins stay; 0 for sheets without.
+    notched : bool
+        Whether notches are filled and cut out, whole panels among them; else the edge is cut along the target.
 
     Returns
     -------
@@ -251,8 +255,9 @@ def covered(
         cancel,
         locked,
         least_panel=least_panel,
-        even=even if least_gap else COVER_EVENNESS * even,
-        notched=True,
+        even=COVER_EVENNESS * even if notched and not least_gap else even,
+        notched=notched,
+        afresh=True,
         room=room,
         least_gap=least_gap,
     )
@@ -274,6 +279,7 @@ def _cover(
     least_panel: float,
     even: float = 0.0,
     notched: bool = False,
+    afresh: bool = False,
     room: Room,
     least_gap: float = 0.0,
 ) -> Cover:
@@ -296,6 +302,7 @@ def _cover(
             least_panel=least_panel,
             least_gap=least_gap,
             notched=notched,
+            afresh=afresh,
             # Locked voids keep their ratios, whatever room there is.
             room=partial((room if free else NO_ROOM).made, cancel=cancel),
         )
