@@ -448,7 +448,7 @@ def ranked_as_cut(
 
 
 def _looking_at(number: int, total: int) -> Progress:
-    message = tr("Looking for a design that can be cut: {number} of {total}", number=number, total=total)
+    message = tr("Checking as cut: {number} of {total}", number=number, total=total)
     return Progress(number, total, message)
 
 

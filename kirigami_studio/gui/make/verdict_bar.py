@@ -12,6 +12,7 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.make.verdict import VerdictState
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.announcing import announce
+from kirigami_studio.gui.widgets.fitted_text import elided
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.verdict_marks import ICONS, colour_of, level_of
 
@@ -22,9 +23,8 @@ if TYPE_CHECKING:
 SHARE = 0.62
 #: Pixels beside headline and fixes: margins, icon, gaps.
 BESIDE = 64
-#: A banner at least this wide (pixels) tells the worst problem in one line, and so does one in a low panel.
-WIDE = 560
-LINE_USED = 0.9
+#: Lines of the worst problem, and the share of them that is used: what is left of one when words wrap is lost.
+LINES, LINE_USED = 2, 0.9
 ICON_EDGE = 20
 
 
@@ -38,7 +38,6 @@ class VerdictBar(QFrame):
         self.setObjectName("verdictBar")
         self._palette: Palette = LIGHT
         self._state = VerdictState()
-        self._low = False
         self.setAccessibleName(tr("Verdict on the sheet as cut"))
         self.icon = QLabel()
         self.icon.setFixedSize(ICON_EDGE, ICON_EDGE)
@@ -51,6 +50,7 @@ class VerdictBar(QFrame):
         self.sentence.setWordWrap(True)
         self.sentence.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
         self.sentence.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.sentence.setFixedHeight(LINES * self.sentence.fontMetrics().lineSpacing() + 2)
         self.more = QPushButton(tr("More fixes"))
         self.more.setObjectName("small")
         self.more.setToolTip(tr("More changes that were tried on this design and help."))
@@ -105,16 +105,12 @@ class VerdictBar(QFrame):
         self.style().polish(self)
 
     def _fit_sentence(self) -> None:
-        """Show the worst problem, or the first note, in one line of a wide or low banner or two of a narrow one."""
+        """Show the worst problem, or the first note, in two lines."""
         margins = self._grid.contentsMargins()
         width = max(self.width() - margins.left() - margins.right() - 2 * self.frameWidth() - 2, 1)
         said, metrics = self._state.lines[1:2], self.sentence.fontMetrics()
-        lines = 1 if width >= WIDE or self._low else 2
-        self.sentence.setWordWrap(lines > 1)
-        # What is left of a line when words wrap is lost.
-        room = width if lines == 1 else round(LINE_USED * lines * width)
-        self.sentence.setText(metrics.elidedText(said[0], Qt.TextElideMode.ElideRight, room) if said else "")
-        self.sentence.setFixedHeight(lines * metrics.lineSpacing() + 2)
+        room = round(LINE_USED * LINES * width)
+        self.sentence.setText(elided(metrics, said[0], room) if said else "")
 
     def _show_fixes(self) -> None:
         for button in self.buttons:
@@ -157,13 +153,6 @@ class VerdictBar(QFrame):
             action.triggered.connect(lambda _=False, fix=fix: self.fix_wanted.emit(fix))
         self.more.setText(tr("Fixes") if len(hidden) == len(fixes) else tr("More fixes"))
         self.more.setVisible(bool(hidden))
-
-    def set_low(self, low: bool) -> None:
-        """Leave room to the drawing in a low panel: one line less, at once."""
-        if self._low != low:
-            self._low = low
-            self._fit_sentence()
-            self._grid.activate()
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(0, super().minimumSizeHint().height())

@@ -115,7 +115,9 @@ class MessageBar(QFrame):
 
     def set_palette(self, palette: Palette) -> None:
         self._palette = palette
+        unfolded = self.details.isChecked()
         self._go(self._at)
+        self.details.setChecked(unfolded)
 
     def lay_over(self, room: QRect) -> None:
         """Lie over this part of the parent, from its top down as far as the message needs.

@@ -34,8 +34,7 @@ from kirigami_studio.studio.two_states import TwoStates, shown_flat_match, shown
 
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
 WIDE = 640
-#: A stage lower than this (pixels) leaves room to the drawing: one line for the worst problem, none for the slider's
-#: ends.
+#: A stage lower than this (pixels) leaves room to the drawing: no line for the slider's ends.
 LOW = 630
 #: Pixels between the title and the numbers at least.
 GAP = 12
@@ -444,8 +443,7 @@ class StagePanel(Card):
         self._fit_numbers()
         super().resizeEvent(event)
         self._place_plots()
-        for part in (self.verdict, self.ends):
-            part.set_low(self.height() < LOW)
+        self.ends.set_low(self.height() < LOW)
         self.body.activate()
 
     def _update_overlays(self) -> None:
