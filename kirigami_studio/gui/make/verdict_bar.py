@@ -12,7 +12,9 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.make.verdict import VerdictState
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.announcing import announce
+from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.fitted_text import elided
+from kirigami_studio.gui.widgets.layouts import TOUCH
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.verdict_marks import ICONS, colour_of, level_of
 
@@ -41,10 +43,8 @@ class VerdictBar(QFrame):
         self.setAccessibleName(tr("Verdict on the sheet as cut"))
         self.icon = QLabel()
         self.icon.setFixedSize(ICON_EDGE, ICON_EDGE)
-        self.headline = QLabel()
+        self.headline = ElidedLabel(Qt.TextElideMode.ElideRight)
         self.headline.setObjectName("verdictLevel")
-        self.headline.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.headline.setMinimumWidth(0)
         self.sentence = QLabel()
         self.sentence.setObjectName("muted")
         self.sentence.setWordWrap(True)
@@ -72,7 +72,7 @@ class VerdictBar(QFrame):
         grid.addWidget(self.sentence, 1, 0, 1, 3)
         grid.setColumnStretch(1, 1)
         # A button is higher than a line of text: room for one is kept, so that nothing moves when fixes are found.
-        grid.setRowMinimumHeight(0, self.more.sizeHint().height())
+        grid.setRowMinimumHeight(0, TOUCH)
         self.hide()
 
     def show_state(self, state: VerdictState) -> None:
@@ -91,7 +91,7 @@ class VerdictBar(QFrame):
         said = headline(state)
         if said != self.headline.text() and not state.pending:
             announce(self, said)
-        self.headline.setText(said)
+        self.headline.setText(said, *([] if verdict is None or state.pending else [verdict.words]))
         self.icon.setAccessibleName(said)
         self.setToolTip("\n".join(state.lines))
         self._fit_sentence()
