@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import pytest
 from PySide6.QtCore import QPoint, QRect
-from PySide6.QtWidgets import QApplication, QToolBar, QToolButton, QWidget
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QAbstractSpinBox,
+    QApplication,
+    QComboBox,
+    QLabel,
+    QToolBar,
+    QToolButton,
+    QWidget,
+)
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.make.fabrication_panel import LEAST_CHOICES
 from kirigami_studio.gui.session.messages import Message, Tone
+from kirigami_studio.gui.widgets.card import Card
+from kirigami_studio.gui.widgets.theme import DARK
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.gui.window.stage_panel import LOW
+from kirigami_studio.project.labels import LONGEST_NAME
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -152,6 +165,72 @@ def test_that_a_message_is_low_where_its_buttons_stand_below_it(designed: MainWi
     assert short <= 48 and designed.messages.height() <= 96
 
 
+def test_that_the_answers_to_a_question_are_whole_in_a_small_window(designed: MainWindow) -> None:
+    designed.resize(1000, 640)
+    answers = (("Zuerst speichern", lambda: None), ("Nicht speichern", lambda: None))
+    for sentence in ("Gespeichert.", "Vor dem Beginn eines neuen Projekts speichern?"):
+        designed.messages.add(Message(sentence, Tone.WARNING, "line", actions=answers))
+    resized(designed, 1000, 640)
+    buttons = [one for one in designed.messages.findChildren(QAbstractButton) if one.isVisible()]
+    assert len(buttons) == 8
+    for one in buttons:
+        assert one.width() >= one.sizeHint().width(), one.text()
+
+
+def test_that_details_that_are_read_stay_while_the_theme_changes(designed: MainWindow) -> None:
+    designed.messages.add(Message("Cannot read it.", Tone.ERROR, "line"))
+    designed.messages.details.click()
+    designed.appearance.set_theme(DARK)
+    assert designed.messages.trace.isVisible()
+    designed.messages.add(Message("Cannot read the other.", Tone.ERROR, "line"))
+    assert not designed.messages.trace.isVisible()
+
+
+def test_that_a_long_name_of_a_design_leaves_the_columns_their_widths(designed: MainWindow) -> None:
+    chosen = designed.session.stage
+    label = None if chosen is None else designed.session.document.label_of(chosen.candidate)
+    assert label is not None
+    widths = {}
+    for name in ("", "W" * LONGEST_NAME):
+        designed.services.labels.set(label, name, "")
+        for page in (WindowPage.DESIGN, WindowPage.MAKE):
+            designed.pages.turn(page)
+            resized(designed, 1000, 640)
+            widths[name, page] = designed.pages.splitter.sizes()
+            assert designed.stage.title.drawn_text().endswith("…") == bool(name)
+    for page in (WindowPage.DESIGN, WindowPage.MAKE):
+        for width, beside in zip(widths["", page], widths["W" * LONGEST_NAME, page], strict=True):
+            assert abs(width - beside) <= 4
+    assert designed.fabrication.scrolled.widget().width() <= designed.fabrication.scrolled.viewport().width()
+
+
+def test_that_sliders_are_long_enough_to_use_and_legends_leave_the_drawing_room(designed: MainWindow) -> None:
+    for page in (WindowPage.DESIGN, WindowPage.MAKE):
+        designed.pages.turn(page)
+        resized(designed, 1000, 640)
+        view, metrics = designed.stage.view, designed.stage.view.fontMetrics()
+        assert designed.stage.deployment.slider.width() >= 200
+        legend = view.legend(metrics)
+        assert legend and len({box.top() for _, box in legend}) <= 2
+        assert all(chip.width(metrics) <= box.width() for chip, box in legend), "no label is cut off"
+    assert designed.cuts.bar.slider.width() >= 90
+
+
+@pytest.mark.parametrize("page", WindowPage)
+def test_that_fields_beside_each_other_are_equally_high(designed: MainWindow, page: WindowPage) -> None:
+    designed.pages.turn(page)
+    resized(designed, 1280, 720)
+    beside = 0
+    for panel in designed.findChildren(Card):
+        fields = [one for one in panel.findChildren(QWidget) if isinstance(one, QAbstractSpinBox | QComboBox)]
+        boxes = [QRect(one.mapTo(designed, QPoint()), one.size()) for one in fields if one.isVisible()]
+        for one, other in itertools.combinations(boxes, 2):
+            if abs(one.center().y() - other.center().y()) < 8:
+                beside += 1
+                assert (one.top(), one.height()) == (other.top(), other.height()), panel.title.text()
+    assert beside >= 2
+
+
 @pytest.mark.parametrize(("width", "height"), [(1280, 720), (1000, 640)])
 def test_that_the_choices_of_making_end_below_a_whole_row(designed: MainWindow, width: int, height: int) -> None:
     designed.pages.turn(WindowPage.MAKE)
@@ -160,10 +239,16 @@ def test_that_the_choices_of_making_end_below_a_whole_row(designed: MainWindow, 
     scrolled = designed.fabrication.scrolled
     seen = scrolled.viewport().rect()
     assert seen.height() >= LEAST_CHOICES // 2 and scrolled.verticalScrollBar().value() == 0
-    for field in designed.fabrication.form.fields.values():
+    for field in (*designed.fabrication.form.fields.values(), *designed.fabrication.options.cuts.fields.values()):
         if field.isVisible():
             top = field.mapTo(scrolled.viewport(), QPoint()).y()
             assert top + field.height() <= seen.height() or top >= seen.height(), field.objectName()
+    for size in range(height, height + 120, 9):  # nor does a caption stand alone
+        resized(designed, width, size)
+        for caption in scrolled.widget().findChildren(QLabel):
+            field = caption.buddy()
+            if field is not None and field.isVisible() and not caption.visibleRegion().isEmpty():
+                assert field.visibleRegion().boundingRect().height() == field.height(), (size, caption.text())
 
 
 @pytest.mark.parametrize("page", WindowPage)

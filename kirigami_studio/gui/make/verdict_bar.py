@@ -109,8 +109,9 @@ class VerdictBar(QFrame):
         margins = self._grid.contentsMargins()
         width = max(self.width() - margins.left() - margins.right() - 2 * self.frameWidth() - 2, 1)
         said, metrics = self._state.lines[1:2], self.sentence.fontMetrics()
-        room = round(LINE_USED * LINES * width)
-        self.sentence.setText(elided(metrics, said[0], room) if said else "")
+        self.sentence.setText(said[0] if said else "")
+        if self.sentence.heightForWidth(width) > self.sentence.height():
+            self.sentence.setText(elided(metrics, said[0], round(LINE_USED * LINES * width)))
 
     def _show_fixes(self) -> None:
         for button in self.buttons:

@@ -24,7 +24,7 @@ from kirigami_studio.gui.widgets.theme import Palette
 
 TOOL_ICON = QSize(18, 18)
 #: Pixels of a title that are shown in any window; a header plans no more than this share of its width for one.
-LEAST_TITLE, TITLE_SHARE = 90, 0.4
+LEAST_TITLE, TITLE_SHARE = 72, 0.4
 INSET = 12
 
 
