@@ -6,13 +6,14 @@ import itertools
 from collections.abc import Callable
 
 import pytest
-from PySide6.QtCore import QPoint, QRect
+from PySide6.QtCore import QPoint, QRect, QSize
 from PySide6.QtWidgets import (
     QAbstractButton,
     QAbstractSpinBox,
     QApplication,
     QComboBox,
     QLabel,
+    QListWidgetItem,
     QToolBar,
     QToolButton,
     QWidget,
@@ -22,6 +23,7 @@ from pytestqt.qtbot import QtBot
 from kirigami_studio.gui.make.fabrication_panel import LEAST_CHOICES
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.widgets.card import Card
+from kirigami_studio.gui.widgets.search_window import PictureList
 from kirigami_studio.gui.widgets.theme import DARK
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.pages import WindowPage
@@ -214,6 +216,34 @@ def test_that_sliders_are_long_enough_to_use_and_legends_leave_the_drawing_room(
         assert legend and len({box.top() for _, box in legend}) <= 2
         assert all(chip.width(metrics) <= box.width() for chip, box in legend), "no label is cut off"
     assert designed.cuts.bar.slider.width() >= 90
+
+
+def test_that_pictures_stand_in_the_middle_of_their_list_whatever_its_width(qtbot: QtBot) -> None:
+    made = PictureList("list", "Pictures", QSize(80, 40), QSize(100, 60))
+    qtbot.addWidget(made)
+    made.show()
+    assert not made.verticalScrollBar().isVisible()
+    for number in range(9):
+        item = QListWidgetItem(f"{number}", made)
+        item.setSizeHint(QSize(100, 60))
+    for width, columns in ((150, 1), (180, 1), (290, 2)):
+        made.resize(width, 100)
+        QApplication.processEvents()
+        boxes = [made.visualItemRect(made.item(row)) for row in range(made.count())]
+        assert len({box.left() for box in boxes}) == columns
+        left, right = min(box.left() for box in boxes), made.viewport().width() - max(box.right() for box in boxes)
+        assert abs(left - right) <= 3 + columns, (width, left, right)
+
+
+def test_that_the_largest_limit_of_a_filter_is_shown_whole(designed: MainWindow) -> None:
+    designed.gallery.bar.filter.click()
+    field = designed.gallery.bar.filters.least
+    field.setValue(100.0)
+    QApplication.processEvents()
+    words = field.lineEdit()
+    assert words.text() == "≥ 100.0 %"
+    room = words.width() - words.textMargins().left() - words.textMargins().right() - 4
+    assert words.fontMetrics().horizontalAdvance(words.text()) <= room
 
 
 @pytest.mark.parametrize("page", WindowPage)

@@ -36,7 +36,6 @@ class PictureList(QListWidget):
         self.setResizeMode(QListView.ResizeMode.Adjust)
         self.setIconSize(picture)
         self.setWordWrap(True)
-        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
         self._fill_width()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
@@ -44,7 +43,7 @@ class PictureList(QListWidget):
         self._fill_width()
 
     def _fill_width(self) -> None:
-        width = self.viewport().width()
+        width = self.width() - 2 * self.frameWidth() - self.verticalScrollBar().sizeHint().width()
         columns = max(width // self._card.width(), 1)
         cell = QSize(max(width // columns - 1, self._card.width()), self._card.height())
         if cell != self.gridSize():
