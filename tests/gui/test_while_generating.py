@@ -6,9 +6,14 @@ from collections.abc import Callable
 
 import pytest
 
+from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.gui.gallery.gallery_model import UNCHECKED_ROLE
 from kirigami_studio.gui.stage.layout_view import CAPTION_HEIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.pipeline.events import Result
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
+from kirigami_studio.studio.designing import Judged
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -75,3 +80,30 @@ def test_that_words_and_target_do_not_lie_over_each_other(designed: MainWindow) 
     transform = view.transform()
     assert transform is not None and target is not None
     assert transform.to_pixels(target.points)[:, 1].min() >= CAPTION_HEIGHT
+
+
+def test_that_a_design_that_nobody_has_checked_says_so_on_its_card_until_the_run_has(
+    designed: MainWindow, designs: Document
+) -> None:
+    """Before, it had its match and an icon without a word, as one that is ready."""
+    services, model, first = designed.services, designed.gallery.view.model_, designs.candidates[0]
+    begin_run(designed)
+    services.session.display.add(services.session.cache.entry(first))
+    card = model.index(0, 0)
+    assert card.data(UNCHECKED_ROLE) == "Not checked yet"
+    found = AsCut(0.0, 0.0, Outcome.CLOSES, 0.0, 0.01, StrainFigure.OUT_OF_PLANE, 0.9, 0.9)
+    services.run.judged.emit(Judged(first, None, 0.0, found))
+    assert card.data(UNCHECKED_ROLE) == "" and model.verdict_of(first).is_checked
+    services.run.judged.emit(Judged(first, Note.of("rank.jams", own=20.0), 0.0, None))
+    assert services.session.display.ranking.refusals.keys() == {first}
+    services.run.ended.emit(False)
+
+
+def test_that_the_times_of_designing_and_of_checking_are_both_said(designed: MainWindow, designs: Document) -> None:
+    """Before, eight designs "in 8.6 s" after minutes of waiting."""
+    planner, target = designed.services.generation.planner, designs.target
+    assert target is not None
+    request = planner.anew(target).request
+    result = Result(request, designs.candidates, 3, 8.0, judging_seconds=100.0)
+    said = planner.summary(result, designs, "", 109.0)
+    assert "9 s" in said and "100 s" in said
