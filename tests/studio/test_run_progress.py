@@ -48,11 +48,10 @@ def test_that_the_share_of_a_run_never_falls_when_a_phase_begins_or_comes_again(
 
 
 def test_that_checking_says_the_most_that_it_may_still_take(request_: Request) -> None:
-    now = 100.0
-    whole = RunProgress(request_, lambda: now)
-    said = []
-    for now, done in ((100.0, 0), (109.0, 0), (120.0, 1), (150.0, 2), (200.0, 8)):
-        said.append(whole.placed(Progress(done, 8, "x", Phase.JUDGING)).message)
+    times = (100.0, 109.0, 120.0, 150.0, 200.0)
+    ticks = iter((100.0, *times))  # one look at the clock when the phase begins
+    whole = RunProgress(request_, lambda: next(ticks))
+    said = [whole.placed(Progress(done, 8, "x", Phase.JUDGING)).message for done in (0, 0, 1, 2, 8)]
     assert said[0] == said[1] == said[4] == "x", "nothing is known before the first design is checked"
     assert "2 min" in said[2], "7 designs of 20 s"
     assert "2 min" in said[3], "6 designs of 25 s"

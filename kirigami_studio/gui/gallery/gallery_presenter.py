@@ -200,7 +200,8 @@ class GalleryPresenter(QObject):
         if not running:
             view.mark(document.candidate)
             limit = limit_of(document) if document.candidates else None
-            self._panel.show_why("" if limit is None else limit.text)
+            filled = self._session.ranking.why_filled(document.candidates) if document.candidates else None
+            self._panel.show_why("\n".join(note.text for note in (filled, limit) if note is not None))
         self._show_ready(document)
         self._show_chosen()
 

@@ -142,11 +142,13 @@ class TargetPanel(Card):
         self.facts, self.size_ = ElidedLabel(), label()
         self.notes = label(name="warning", wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.reach, self.start_refusal, self.limit = (ElidedLabel(Qt.TextElideMode.ElideRight) for _ in range(3))
+        labels = (ElidedLabel(Qt.TextElideMode.ElideRight) for _ in range(4))
+        self.reach, self.start_refusal, self.limit, self.cutting = labels
         self.reach.setAccessibleDescription(tr("Details that the grid may miss"))
         self.start_refusal.setAccessibleDescription(tr("Why the next run would refuse the start"))
         self.limit.setAccessibleDescription(tr("What no closed sheet shows of the target"))
-        for warning in (self.reach, self.start_refusal, self.limit):
+        self.cutting.setAccessibleDescription(tr("How long the machine will cut"))
+        for warning in (self.reach, self.start_refusal, self.limit, self.cutting):
             warning.setObjectName("warning")
             warning.setVisible(False)
         self.threshold, self.start, self.opened = ThresholdBar(), StartTile(), OpenedSizeRow()
@@ -157,7 +159,7 @@ class TargetPanel(Card):
         self.body.addWidget(self.tools)
         self.body.addLayout(row(self.start, (self.view, 1), spacing=8), 1)
         self.body.addLayout(row((self.facts, 1), self.size_))
-        warnings = (self.start_refusal, self.reach, self.limit)
+        warnings = (self.start_refusal, self.reach, self.limit, self.cutting)
         for part in (self.opened, *warnings, self.fill, self.refine, self.threshold, self.notes, self.loose):
             self.body.addWidget(part)
         self.view.context.selection_changed.connect(self._show_selection)
@@ -291,6 +293,12 @@ class TargetPanel(Card):
         self.limit.setText(sentence)
         self.limit.setToolTip(sentence)
         self.limit.setVisible(bool(sentence))
+
+    def show_cutting_time(self, sentence: str, brief: str) -> None:
+        """Say before a run that cutting takes hours; "" where it does not."""
+        self.cutting.setText(sentence, brief)
+        self.cutting.setToolTip(sentence)
+        self.cutting.setVisible(bool(sentence))
 
     def _show_reach_text(self) -> None:
         whole, brief = self._reach_texts

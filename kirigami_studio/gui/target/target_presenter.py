@@ -21,13 +21,19 @@ from kirigami_studio.gui.target.sketch_context import Change
 from kirigami_studio.gui.target.target_panel import DONE_HINT, TargetPanel
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.target.targeting import StartReader, Targeting
+from kirigami_studio.gui.widgets.readable import rough_time
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import size_of, target_as_cut
+from kirigami_studio.settings.design import USUAL_GRID
+from kirigami_studio.studio.cutting import expected_seconds
 from kirigami_studio.studio.designing import limit_of
 from kirigami_studio.studio.two_states import flat_size, starts_as
+
+#: Seconds of cutting from which on it is said before a run.
+LONG_CUT = 2.0 * 3600.0
 
 
 class TargetPresenter(QObject):
@@ -191,8 +197,21 @@ class TargetPresenter(QObject):
             self._panel.show_reach(document.settings.grid)
         limit = limit_of(document)
         self._panel.show_limit("" if limit is None else limit.text)
+        self._show_cutting_time(document)
         if document.guides != before.guides:
             self._panel.view.context.show_guides(document.guides)
+
+    def _show_cutting_time(self, document: Document) -> None:
+        """Warn of hours of cutting before a run; afterwards the plan has the time."""
+        settings = document.settings
+        grid = USUAL_GRID if settings.auto_grid else settings.grid
+        seconds = 0.0 if document.candidates else expected_seconds(document.fabrication, grid)
+        if document.target is None or seconds < LONG_CUT:
+            self._panel.show_cutting_time("", "")
+            return
+        time = rough_time(seconds)
+        sentence = tr("The machine will cut for about {time}. A smaller sheet, or fewer voids, takes less.", time=time)
+        self._panel.show_cutting_time(sentence, tr("Cutting takes about {time}.", time=time))
 
     def _show_target(self, document: Document) -> None:
         panel = self._panel
@@ -202,6 +221,7 @@ class TargetPresenter(QObject):
         panel.show_target(target, picture, drawing, document.target)
         self.reshaping.follow()
         panel.show_reach(document.settings.grid)
+        self._show_cutting_time(document)
 
 
 def _moved(document: Document, before: Document) -> bool:
