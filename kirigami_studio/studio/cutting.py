@@ -42,6 +42,8 @@ from kirigami_studio.settings.layers import board_layer, hinge_layer, is_backed
 #: Length of the cuts of pieces on pins and of tiles, over that of plain panels: ears, holes of pins, relief.  Pieces of
 #: a heart, 8 x 8 voids and 380 mm wide, have 1.4 times as much.
 ROUND_PANELS = 1.4
+#: Stops of the head in one cut, at its ends and where it goes round connectors.
+STOPS = 4
 
 
 def expected_seconds(settings: FabricationSettings, grid: tuple[int, int] = USUAL_GRID) -> float:
@@ -63,7 +65,10 @@ def expected_seconds(settings: FabricationSettings, grid: tuple[int, int] = USUA
     between, rim = columns * height + rows * width, 2.0 * (width + height)
     panels = ROUND_PANELS * (2.0 * between + rim)
     length = panels if is_pinned(settings) else between + rim + (panels if is_backed(settings) else 0.0)
-    return material.passes * length / machine.speed_mm_s(material)
+    speed, cuts = machine.speed_mm_s(material), rows * columns + 2 * (rows + columns)
+    switching = machine.on_delay_s + machine.off_delay_s + STOPS * machine.corner_delay_s
+    moving = width / columns / machine.travel_mm_s + STOPS * speed / machine.acceleration_mm_s2
+    return material.passes * (length / speed + cuts * (switching + moving))
 
 
 def plan_of(

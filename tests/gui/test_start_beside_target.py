@@ -220,8 +220,8 @@ def test_that_the_ends_of_the_slider_name_both_states_with_size_and_match(
     assert ends.start.drawn_text() == f"flat: circle  ·  100 {TIMES} {height:.0f} mm  ·  match {match:.1f} %"
     opened = np.ptp(deployment.nodes(0.0), axis=0) * 100.0 / (high_x - low_x)
     said = ends.target.accessibleName()
-    assert said.startswith("heart") and said.endswith(f"match {100 * score.iou_exact:.1f} %")
-    width_mm = float(said.split()[2])
+    assert said.startswith("open: heart") and said.endswith(f"match {100 * score.iou_exact:.1f} %")
+    width_mm = float(said.split()[3])
     assert width_mm == pytest.approx(opened[0], rel=0.15)  # the heart's, which an unfitted sheet is near to
     assert "circle 9" in window.facts.text()
 

@@ -157,6 +157,6 @@ def test_that_the_time_of_cutting_that_is_expected_before_a_run_is_near_that_of_
     settings = FabricationSettings(machine=machine, material=material, width_mm=160.0)
     plan = plan_sheet(deploy(RatioField.uniform(8, 8)), settings)
     ratio = expected_seconds(settings, (8, 8)) / plan.times.total
-    assert 0.5 < ratio < 1.5, ratio
+    assert 0.8 < ratio < 1.25, ratio
     assert expected_seconds(replace(settings, machine="hand")) == 0.0, "nobody knows how fast hands are"
     assert expected_seconds(replace(settings, material="none such")) == 0.0

@@ -103,6 +103,11 @@ class VerdictBar(QFrame):
         self.style().unpolish(self)
         self.style().polish(self)
 
+    def fit_lines(self) -> None:
+        """Keep the lines that there will be at this width, also while nothing is shown."""
+        self._fit_sentence()
+        self._grid.activate()
+
     def _fit_sentence(self) -> None:
         """Show the worst problem, or the first note, in one line of a wide or low banner or two of a narrow one."""
         margins = self._grid.contentsMargins()
@@ -161,8 +166,7 @@ class VerdictBar(QFrame):
         """Leave room to the drawing in a low panel: one line less, at once."""
         if self._low != low:
             self._low = low
-            self._fit_sentence()
-            self._grid.activate()
+            self.fit_lines()
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(0, super().minimumSizeHint().height())
