@@ -251,10 +251,12 @@ def run_design(
     from kirigami_studio.pipeline.run import grid_choice, run, start_choice, with_grid
 
     if request.start.is_auto and request.near is None:
+        yield Progress(0, request.k, tr("Choosing the start"))
         chosen = start_choice(request)
         yield StartChosen(chosen.start, chosen.reason)
         request = request.with_start(chosen.start)
     if request.grid is None and request.near is None:
+        yield Progress(0, request.k, tr("Choosing the grid"))
         choice = grid_choice(request)
         yield GridChosen(choice.grid, choice.reason)
     request = _with_sizes(with_grid(request), cut, least_panel_mm)
@@ -485,7 +487,7 @@ def ranked_as_cut(
 
 
 def _looking_at(number: int, total: int) -> Progress:
-    message = tr("Checking {number} of at most {total}", number=number, total=total)
+    message = tr("Checking {number} of {total}", number=number, total=total)
     return Progress(number - 1, total, message, Phase.JUDGING)
 
 

@@ -29,6 +29,8 @@ WEIGHTS = {
 }
 #: Share of what is left that a phase takes that comes again, such as judging what was trimmed meanwhile.
 AGAIN = 0.5
+#: Phases that ask for more as they go on, and the share of their time that what is asked for first takes.
+GROWING, FIRST_SHARE = frozenset({Phase.FITTING, Phase.POLISHING}), 0.6
 #: Seconds of judging from which on it is said how long it may take.
 WORTH_SAYING = 3.0
 
@@ -52,6 +54,7 @@ class RunProgress:
         self._phase: Phase | None = None
         self._span = (0.0, 0.0)  # shares of the whole at the begin and the end of the phase
         self._began = 0.0  # when judging began, seconds
+        self._total = self._before = 0  # of a growing phase: asked for so far, and done before more was asked for
 
     def placed(self, progress: Progress) -> Progress:
         """Progress with its share of the whole run and, of judging, the most that it may still take."""
@@ -59,8 +62,15 @@ class RunProgress:
             return replace(progress, share=self._share)  # fits have begun before, and go on
         if progress.phase is not self._phase:
             self._begin(progress.phase)
+        if progress.phase in GROWING and progress.total > self._total > 0:
+            self._span = (self._share, self._span[1])
+            self._before = progress.done
+        self._total = progress.total
         low, high = self._span
-        part = min(progress.done / progress.total, 1.0) if progress.total else 0.0
+        left = progress.total - self._before
+        part = min((progress.done - self._before) / left, 1.0) if left > 0 else 0.0
+        if progress.phase in GROWING:
+            part *= FIRST_SHARE
         self._share = max(self._share, low + part * (high - low))
         message = progress.message
         if progress.phase is Phase.JUDGING:
@@ -70,6 +80,7 @@ class RunProgress:
     def _begin(self, phase: Phase) -> None:
         """Pass over the phases that are not needed; one that comes again takes a part of what is left."""
         self._phase, self._began = phase, self._clock()
+        self._total = self._before = 0
         if phase not in self._left:
             self._span = (self._share, self._share + AGAIN * (1.0 - self._share))
             return

@@ -83,11 +83,11 @@ def test_that_words_and_target_do_not_lie_over_each_other(designed: MainWindow) 
 
 
 def test_that_a_design_that_nobody_has_checked_says_so_on_its_card_until_the_run_has(
-    designed: MainWindow, designs: Document
+    heart: MainWindow, designs: Document
 ) -> None:
     """Before, it had its match and an icon without a word, as one that is ready."""
-    services, model, first = designed.services, designed.gallery.view.model_, designs.candidates[0]
-    begin_run(designed)
+    services, model, first = heart.services, heart.gallery.view.model_, designs.candidates[0]
+    begin_run(heart)
     services.session.display.add(services.session.cache.entry(first))
     card = model.index(0, 0)
     assert card.data(UNCHECKED_ROLE) == "Not checked yet"

@@ -25,7 +25,7 @@ REPORTED = (
     (Phase.POLISHING, 0, 6),
     (Phase.POLISHING, 6, 6),
     (Phase.POLISHING, 6, 10),
-    (Phase.FINISHING, 0, 1),
+    (Phase.POLISHING, 10, 10),
     (Phase.JUDGING, 0, 8),
     (Phase.JUDGING, 4, 8),
     (Phase.TRIMMING, 0, 3),
@@ -43,6 +43,7 @@ def test_that_the_share_of_a_run_never_falls_when_a_phase_begins_or_comes_again(
     whole = RunProgress(request_)
     shares = [whole.placed(Progress(done, total, "", phase)).share for phase, done, total in REPORTED]
     assert shares == sorted(shares) and shares[0] == 0.0 and shares[-1] < 1.0
+    assert shares[4] < shares[5] == shares[6] < shares[7], "more to polish is no step back, and moves the bar"
     assert shares[8] < shares[9] == shares[10] == shares[11] < shares[12], "what comes again takes a part of the rest"
     assert 0.4 < shares[8] < 0.8, "checking takes as long as designing"
 

@@ -76,7 +76,8 @@ class CuttingQuestion(QFrame):
     def _offer_materials(self, key: str) -> None:
         """List the materials of a machine by name, those that one sheet cannot be made of last."""
         machine = find_machine(key)
-        self._begin(tr("{machine}: which material?", machine=tr(machine.name)), key)
+        spoken = tr("{machine}: which material?", machine=tr(machine.name))
+        self._begin(tr("Which material?"), key, spoken)
         offered = cuttable(machine).items()
         for key, material in sorted(
             offered, key=lambda one: (one[1].limits_note is not None, tr(one[1].name).casefold())
@@ -89,15 +90,16 @@ class CuttingQuestion(QFrame):
             )
             made = tr(CONSTRUCTIONS[construction].label)
             if seconds:
-                made = tr("{construction}, cut in about {time}", construction=made, time=rough_time(seconds))
+                made = tr("cut in about {time}  ·  {construction}", construction=made, time=rough_time(seconds))
             item.setText(f"{item.text()}\n{made}")
             item.setIcon(QIcon(str(resource("constructions", f"{construction.value}.png"))))
 
-    def _begin(self, title: str, machine: str) -> None:
+    def _begin(self, title: str, machine: str, spoken: str = "") -> None:
         self._machine = machine
         self.list.clear()
-        self.list.setAccessibleName(title)
+        self.list.setAccessibleName(spoken or title)
         self.title.setText(title)
+        self.title.setToolTip(spoken)
         self.back.setVisible(bool(machine))
 
     def _add(self, text: str, key: str, tip: str) -> QListWidgetItem:

@@ -501,7 +501,10 @@ class DesignRun(QObject):
                 if report.phase is Phase.JUDGING and not self._checking:
                     self._checking = True
                     self._session.set_status(
-                        tr("Designs are checked as they will be cut, best first. Look at any of them meanwhile.")
+                        tr(
+                            "Designs are checked as they will be cut, best first, until none could be better. "
+                            "Look at any of them meanwhile."
+                        )
                     )
             case Judged():
                 self.judged.emit(report)

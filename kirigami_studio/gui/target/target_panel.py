@@ -131,7 +131,7 @@ class TargetPanel(Card):
         super().__init__(tr("Target"), parent)
         self.view = TargetView()
         self.editing = False
-        self._reach_texts = ("", "")
+        self._reach_texts, self._turns_back = ("", ""), False
         self.tools = DrawingToolBar(self.view.context)
         self.refine = RefineBar()
         self.header.addWidget(self.tools.options)
@@ -278,7 +278,7 @@ class TargetPanel(Card):
         reach = None if placed is None else reach_of(placed.outline, grid)
         self.view.show_reach(reach)
         known = placed is not None and placed.outline.unit == "mm"
-        self._reach_texts = ("", "")
+        self._reach_texts, self._turns_back = ("", ""), reach is not None and reach.turns_back > 0.0
         if placed is not None and reach is not None:
             self._reach_texts = reach_texts(reach, placed.outline, placed.scale if known else None)
         self._show_reach_text()
@@ -293,6 +293,7 @@ class TargetPanel(Card):
         self.limit.setText(sentence)
         self.limit.setToolTip(sentence)
         self.limit.setVisible(bool(sentence))
+        self._show_reach_text()
 
     def show_cutting_time(self, sentence: str, brief: str) -> None:
         """Say before a run that cutting takes hours; "" where it does not."""
@@ -304,7 +305,8 @@ class TargetPanel(Card):
         whole, brief = self._reach_texts
         self.reach.setText(whole if self.editing else brief)
         self.reach.setToolTip(whole)
-        self.reach.setVisible(bool(whole))
+        said = self._turns_back and not self.limit.isHidden()  # the limit says the same of that notch
+        self.reach.setVisible(bool(whole) and not said)
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(250, 195)

@@ -57,6 +57,7 @@ class TargetPresenter(QObject):
         super().__init__(panel)
         self._panel, self._session, self._targeting = panel, session, targeting
         self._errors: list[Message] = []
+        self._grid: tuple[int, int] | None = None
         self._question: Message | None = None
         self._asked_in = 0  # which project the question is about
         self._offered: Outline | None = None
@@ -201,10 +202,16 @@ class TargetPresenter(QObject):
         if document.guides != before.guides:
             self._panel.view.context.show_guides(document.guides)
 
+    def expect_grid(self, grid: tuple[int, int] | None) -> None:
+        """Take the grid that the next run will choose, None where that is not known."""
+        if grid != self._grid:
+            self._grid = grid
+            self._show_cutting_time(self._session.document)
+
     def _show_cutting_time(self, document: Document) -> None:
         """Warn of hours of cutting before a run; afterwards the plan has the time."""
         settings = document.settings
-        grid = USUAL_GRID if settings.auto_grid else settings.grid
+        grid = (self._grid or USUAL_GRID) if settings.auto_grid else settings.grid
         seconds = 0.0 if document.candidates else expected_seconds(document.fabrication, grid)
         if document.target is None or seconds < LONG_CUT:
             self._panel.show_cutting_time("", "")

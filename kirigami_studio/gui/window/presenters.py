@@ -324,6 +324,7 @@ class Presenters(QObject):
             None if reading is None else reading.grid, "" if reading is None else reading.reason
         )
         pages.target.show_start_refusal("" if reading is None else reading.start_refusal)
+        self.target.expect_grid(None if reading is None else reading.grid)
         if reading is not None and reading.grid is not None and settings.auto_grid:
             pages.target.show_reach(reading.grid)
         self.start.show()
