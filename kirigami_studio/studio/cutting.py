@@ -42,6 +42,8 @@ from kirigami_studio.settings.layers import board_layer, hinge_layer, is_backed
 #: Length of the cuts of pieces on pins and of tiles, over that of plain panels: ears, holes of pins, relief.  Pieces of
 #: a heart, 8 x 8 voids and 380 mm wide, have 1.4 times as much.
 ROUND_PANELS = 1.4
+#: Panels on average that leave connectors room everywhere, in the least of one: they differ in size.
+ROOMY = 1.3
 #: Stops of the head in one cut, at its ends and where it goes round connectors.
 STOPS = 4
 
@@ -69,6 +71,17 @@ def expected_seconds(settings: FabricationSettings, grid: tuple[int, int] = USUA
     switching = machine.on_delay_s + machine.off_delay_s + STOPS * machine.corner_delay_s
     moving = width / columns / machine.travel_mm_s + STOPS * speed / machine.acceleration_mm_s2
     return material.passes * (length / speed + cuts * (switching + moving))
+
+
+def least_width_mm(settings: FabricationSettings, cells: float) -> float:
+    """Width (mm) below which connectors have hardly room on a sheet so many cells wide; 0 on pins.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    return 0.0 if is_pinned(settings) else ROOMY * room_mm(settings) * cells
 
 
 def plan_of(

@@ -343,3 +343,16 @@ def test_that_hours_of_cutting_are_told_before_the_run(heart: MainWindow) -> Non
     assert 5.0 < expected / 3600.0 < 10.0 and not label.isHidden() and label.toolTip()
     services.fabrication.change(width_mm=60.0)
     assert label.isHidden()
+
+
+def test_that_a_size_too_small_for_the_connectors_is_told_before_the_run(heart: MainWindow) -> None:
+    """Before, a logo of 92 mm in card was refused after the run: its sheet was to be made 1.6 times wider."""
+    services, label = heart.services, heart.target.cutting
+    services.settings.change(auto_grid=False)
+    services.settings.change(grid=(16, 13))
+    services.fabrication.change(machine="cricut-explore", material="card-co2", width_mm=64.8)
+    assert not label.isHidden() and "1" in label.toolTip() and str(16) in label.toolTip()
+    services.fabrication.change(width_mm=160.0)
+    assert label.isHidden()
+    services.settings.change(grid=(60, 60))
+    assert not label.isHidden(), "it follows the grid"

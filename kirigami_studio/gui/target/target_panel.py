@@ -147,7 +147,7 @@ class TargetPanel(Card):
         self.reach.setAccessibleDescription(tr("Details that the grid may miss"))
         self.start_refusal.setAccessibleDescription(tr("Why the next run would refuse the start"))
         self.limit.setAccessibleDescription(tr("What no closed sheet shows of the target"))
-        self.cutting.setAccessibleDescription(tr("How long the machine will cut"))
+        self.cutting.setAccessibleDescription(tr("Whether the sheet can be cut at this size, and for how long"))
         for warning in (self.reach, self.start_refusal, self.limit, self.cutting):
             warning.setObjectName("warning")
             warning.setVisible(False)
@@ -296,7 +296,7 @@ class TargetPanel(Card):
         self._show_reach_text()
 
     def show_cutting_time(self, sentence: str, brief: str) -> None:
-        """Say before a run that cutting takes hours; "" where it does not."""
+        """Say before a run that cutting takes hours, or that the sheet is too small; "" for neither."""
         self.cutting.setText(sentence, brief)
         self.cutting.setToolTip(sentence)
         self.cutting.setVisible(bool(sentence))
