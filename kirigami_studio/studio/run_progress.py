@@ -15,7 +15,7 @@ from kirigami_studio.foundation.words import tr
 from kirigami_studio.pipeline.events import Phase, Progress
 from kirigami_studio.pipeline.request import Request
 
-#: Usual times of the phases of a run, parts of a whole one: 8 designs of a heart, 8 x 8 voids, in plywood and in film.
+#: Parts of the bar that phases take: judging takes a second in film, on pins longer than all before.
 WEIGHTS = {
     Phase.LOADING: 1.0,
     Phase.SAMPLING: 1.0,

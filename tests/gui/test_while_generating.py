@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.gui.gallery.gallery_model import UNCHECKED_ROLE
+from kirigami_studio.gui.run import generate_bar
 from kirigami_studio.gui.stage.layout_view import CAPTION_HEIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.pipeline.events import Result
@@ -106,4 +108,24 @@ def test_that_the_times_of_designing_and_of_checking_are_both_said(designed: Mai
     request = planner.anew(target).request
     result = Result(request, designs.candidates, 3, 8.0, judging_seconds=100.0)
     said = planner.summary(result, designs, "", 109.0)
-    assert "9 s" in said and "100 s" in said
+    assert "9 s" in said and "100 s" in said and "Best" in said
+    none = replace(result, refusals=dict.fromkeys(designs.candidates, Note.of("rank.not_feasible")))
+    said = planner.summary(none, designs, "", 109.0)
+    assert "100 s" in said and "None can be cut" in said and "Best" not in said
+
+
+def test_that_a_step_that_takes_long_shows_its_seconds_until_the_run_ends(
+    heart: MainWindow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before, nothing moved while one design was checked for half a minute."""
+    begin_run(heart)
+    bar, timer = heart.run, heart.run._seconds
+    bar.show_progress(500, 1000, "Checking 1 of 8")
+    assert timer.isActive()
+    bar.show_seconds()
+    assert bar.progress_text.text() == "Checking 1 of 8"
+    monkeypatch.setattr(generate_bar, "WORTH_COUNTING", 0.0)
+    bar.show_seconds()
+    assert bar.progress_text.text().startswith("Checking 1 of 8") and bar.progress_text.text().endswith("0 s")
+    heart.services.run.ended.emit(False)
+    assert not timer.isActive()

@@ -303,6 +303,16 @@ class RunPlanner:
         plan, document = self.plan, self._session.document
         if plan is None or not plan.joins:
             score = result.best.score
+            if result.best in result.refusals:
+                return tr_n(
+                    "{count} design in {designing}, checked as cut in {judging}. It cannot be cut in this material and "
+                    "size: the verdict says why.",
+                    "{count} designs in {designing}, checked as cut in {judging}. None can be cut in this material and "
+                    "size: the verdict says why.",
+                    len(result.candidates),
+                    designing=readable_time(max(seconds - result.judging_seconds, result.seconds)),
+                    judging=readable_time(result.judging_seconds),
+                )
             told = tr_n(
                 "{count} design in {designing}, checked as cut in {judging}: match {match:.1f} %, panels "
                 "±{variation:.0f} %.",
