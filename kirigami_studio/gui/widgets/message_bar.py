@@ -173,7 +173,8 @@ class MessageBar(QFrame):
         colour = self._palette.accent if message.tone in (Tone.HINT, Tone.DONE) else self._palette.warning
         self.icon.setAccessibleName(tr(TONES[message.tone]))
         self.icon.setPixmap(icons.pixmap(message.tone.value, colour, 20, self.devicePixelRatioF()))
-        if message.tone in (Tone.HINT, Tone.DONE) and not message.actions and self.isVisible():
+        passes = message.passing or not message.actions
+        if message.tone in (Tone.HINT, Tone.DONE) and passes and self.isVisible():
             self._fading.start()
         self._show_actions(message)
         self.setProperty("tone", message.tone.value)
