@@ -45,7 +45,7 @@ def distances(design: Sheet | RatioField, others: Sequence[Sheet | RatioField]) 
 
 
 def turns(design: Sheet | RatioField) -> list[FloatArray]:
-    """z, then the offsets of the mouths, of the same sheet in all its turned positions: one, two or four (m n + R,).
+    """z and the offsets of mouths and edge hinges of the same sheet in all its turned positions: one, two or four.
 
     A sheet with a start outline of its own has one position; with cells that are not square it has no quarter turns.
     """
@@ -60,8 +60,9 @@ def turns(design: Sheet | RatioField) -> list[FloatArray]:
 
 
 def _state(sheet: Sheet) -> FloatArray:
-    """z row by row, then how far the mouths are from their even places, unit cells: (m n + R,)."""
-    return np.concatenate([sheet.field.log10.ravel(), sheet.rim.offsets(*sheet.grid)])
+    """z row by row, then how far mouths are from their even places, unit cells, and edge hinges from halfway."""
+    rim, grid = sheet.rim, sheet.grid
+    return np.concatenate([sheet.field.log10.ravel(), rim.offsets(*grid), rim.hinge_offsets(*grid)])
 
 
 def _kind(sheet: Sheet) -> Hashable:
@@ -109,6 +110,7 @@ def _alike_of_a_kind(sheets: Sequence[Sheet]) -> BoolArray:
         if symmetry.fits(*grid):
             tables = symmetry.on(*grid)
             for source, sign in zip(tables.source, tables.sign, strict=True):
+                source, sign = source[: looks.shape[1]], sign[: looks.shape[1]]
                 np.maximum(products, (sign * looks[:, source]) @ looks.T, out=products)
     alike: BoolArray = size[:, None] + size - 2.0 * products < SAME_LOOK**2 * looks.shape[1]
     return alike
