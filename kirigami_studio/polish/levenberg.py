@@ -151,7 +151,7 @@ def polish(
     locked = check_locked(locked, sheet.field)
     if symmetry is not None and locked.any():
         raise UsageError("fit.locks_and_symmetry")
-    model = OutlineModel.of(sheet, phi, free_rim, start_weight)
+    model = OutlineModel.of(sheet, phi, free_rim, start_weight, free_rim and phi >= ZIPPED_BELOW)
     gap = check_gap(least_gap)
     bounds = ShapeBounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
     start = bounds.allowed(bounds.start)

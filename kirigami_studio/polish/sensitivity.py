@@ -198,8 +198,8 @@ class OutlineModel:
         Whether the mouths belong to the shape.
     start_weight : float
         How firmly a round start is held where they do, see ``chords``.
-    free_hinges : bool, optional
-        Whether the edge hinges belong to it, too; by default where the rim is free and ``phi`` is not 0.
+    free_hinges : bool
+        Whether the edge hinges belong to the shape as well; only beside a free rim.
     """
 
     def __init__(
@@ -212,12 +212,12 @@ class OutlineModel:
         cell: tuple[float, float] = (1.0, 1.0),
         free_rim: bool = False,
         start_weight: float = 1.0,
-        free_hinges: bool | None = None,
+        free_hinges: bool = False,
     ) -> None:
         self.rows, self.columns, self.phi, self.free_rim = rows, columns, phi, free_rim
         zipped = phi < ZIPPED_BELOW
         #: Whether edge hinges belong to the shape
-        self.free_hinges = free_rim and not zipped if free_hinges is None else free_hinges
+        self.free_hinges = free_hinges
         self._start, self._cell = start, cell
         self.has_start = start is not None  #: Whether it is not the paper's rectangle
         self._path, self._table = RimPath(rows, columns, start, cell), rim_table(rows, columns)
@@ -235,9 +235,12 @@ class OutlineModel:
         self.chords = Chords.of(self._path, start_weight) if free_rim else None
 
     @classmethod
-    def of(cls, sheet: Sheet, phi: float, free_rim: bool = False, start_weight: float = 1.0) -> OutlineModel:
+    def of(
+        cls, sheet: Sheet, phi: float, free_rim: bool = False, start_weight: float = 1.0, free_hinges: bool = False
+    ) -> OutlineModel:
         """The model in which a sheet moves."""
-        return cls(sheet.rows, sheet.columns, phi, sheet.rim, sheet.start, sheet.cell, free_rim, start_weight)
+        rows, columns = sheet.grid
+        return cls(rows, columns, phi, sheet.rim, sheet.start, sheet.cell, free_rim, start_weight, free_hinges)
 
     def at(self, phi: float) -> OutlineModel:
         """The model of the same sheets at another angle, radians."""
