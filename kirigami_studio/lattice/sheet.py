@@ -145,6 +145,8 @@ class Rim:
             except (TypeError, ValueError, OverflowError):
                 values = frozen([np.nan])
             if values.ndim != 1 or not np.all(np.isfinite(values)):
+                if name == "hinges":
+                    raise SheetError("rim.hinges_not_numbers")
                 raise SheetError("rim.not_numbers", side=name)
             object.__setattr__(self, name, values)
         if not self.hinges.any():
