@@ -239,8 +239,8 @@ class Judgement:
         low, high = self.siou_interval
         return (
             f"sIoU {self.siou:.3f} ({low:.3f} - {high:.3f}), as released {self.siou_released:.3f}, exact IoU "
-            f"{self.iou_exact:.3f}, success {self.success:.3f}, TV {self.tv:.2f}, CV of panel areas {self.area_cv:.2f}, "
-            f"{1e3 * self.seconds:.1f} ms each, {self.targets} targets"
+            f"{self.iou_exact:.3f}, success {self.success:.3f}, TV {self.tv:.2f}, CV of panel areas "
+            f"{self.area_cv:.2f}, {1e3 * self.seconds:.1f} ms each, {self.targets} targets"
         )
 
     @property

@@ -3,8 +3,8 @@
 ``{"ratio": [[...], ...], "rim": {"top": [...], "right": [...], "bottom": [...], "left": [...]}, "start": [[x, y], ...],
 "cell": [width, height]}``.  Row 0 of the ratios is on top; the rim has the positions of the mouths in unit cells along
 each side, left to right and top to bottom; ``hinges``, where edge hinges are not halfway between their mouths, has the
-shares by which each of them is off, clockwise.  Only ``ratio`` is required: what is missing or null is the paper's.  A bare
-table of ratios, as JSON or .npy, is a sheet too.
+shares by which each of them is off, clockwise.  Only ``ratio`` is required: what is missing or null is the paper's.  A
+bare table of ratios, as JSON or .npy, is a sheet too.
 """
 
 from __future__ import annotations

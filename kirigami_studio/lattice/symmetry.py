@@ -144,9 +144,9 @@ class GridSymmetry:
     def basis(self) -> csc_matrix:
         """All symmetric states: (m * n + R + E, reduced).
 
-        A state (z row by row, then the offsets of mouths and edge hinges) is symmetric exactly when it is ``basis @ y``.  Columns are orthogonal
-        with entries 1, -1 and 0: each entry of y is the value at the first place of its orbit, so bounds on y are
-        bounds on all values.
+        A state (z row by row, then the offsets of mouths and edge hinges) is symmetric exactly when it is
+        ``basis @ y``.  Columns are orthogonal with entries 1, -1 and 0: each entry of y is the value at the first place
+        of its orbit, so bounds on y are bounds on all values.
         """
         count = self.source.shape[1]
         own = np.arange(count)

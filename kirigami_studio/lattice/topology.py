@@ -80,7 +80,8 @@ def topology(rows: int, columns: int) -> Topology:
         even_void=np.add.outer(np.arange(m), np.arange(n)) % 2 == 0,
     )
     for table in (tables.h, tables.v, tables.void_nodes, tables.panel_nodes, tables.outline_nodes,
-                  tables.outline_at_zero, tables.outline_half_zipped, tables.uniform_nodes, tables.fixed, tables.even_void):  # fmt: skip
+                  tables.outline_at_zero, tables.outline_half_zipped, tables.uniform_nodes, tables.fixed,
+                  tables.even_void):  # fmt: skip
         table.setflags(write=False)
     return tables
 

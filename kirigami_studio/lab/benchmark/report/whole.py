@@ -31,8 +31,7 @@ MACHINE = Path("machine.json")
 #: Folder of training runs, each with a ``log.jsonl`` and an ``about.json``, and of what ``benchmark designs`` wrote: a
 #: JSON file for each set of shapes, with its picture.
 TRAINING, SHAPES = Path("training"), Path("shapes")
-#: Where calls of ``benchmark literature`` wrote, such as ``literature-more.json``, and the file that ``benchmark judge``
-#: keeps.
+#: Where calls of ``benchmark literature`` wrote, such as ``literature-more.json``; and what ``benchmark judge`` keeps.
 LITERATURE, LEADERBOARD = "literature*.json", Path("leaderboard.json")
 #: In the folder of a training run: its settings and the size of its network.
 ABOUT = "about.json"
