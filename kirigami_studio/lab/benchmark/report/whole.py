@@ -13,7 +13,7 @@ from pathlib import Path
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.files import write_atomically
-from kirigami_studio.lab.benchmark.report.beside_paper import beside_paper_section
+from kirigami_studio.lab.benchmark.report.beside_paper import beside_paper_section, deviation_section
 from kirigami_studio.lab.benchmark.report.cells import Figures
 from kirigami_studio.lab.benchmark.report.generators import generator_section, grpo_section, training_section
 from kirigami_studio.lab.benchmark.report.others import leaderboard_section, literature_section
@@ -86,7 +86,8 @@ def made_from(folder: Path) -> Report:
         opening = len(lines)
         logs = {path.parent.name: _log(path) for path in sorted((folder / TRAINING).glob("*/log.jsonl"))}
         solvers, generators = _suites(folder, SOLVERS), _suites(folder, GENERATORS)
-        lines += beside_paper_section(solvers, generators, _read(folder / GRPO), falling(logs))
+        beside = list(beside_paper_section(solvers, generators, _read(folder / GRPO), falling(logs)))
+        lines += [*beside, *deviation_section()] if beside else []
         if solvers:
             lines += solver_section(solvers, pictures)
         for name, section in ((BEST_OF_K, best_of_k_section), (GRID_SWEEP, grid_sweep_section)):
