@@ -44,3 +44,12 @@ def test_that_the_leaderboard_has_a_table_for_each_set_best_first(tmp_path: Path
     text = made_from(tmp_path).text
     assert text.index("Drawn, 5 targets") < text.index("| mine | 0 | **95.0** | 80.0 - 90.0 | 91.0 |")
     assert text.index("| mine | 0 | **95.0**") < text.index("| uniform |") < text.index("Sobol, 5 targets")
+
+
+def test_that_training_runs_have_the_minutes_of_all_their_sittings(tmp_path: Path) -> None:
+    log = tmp_path / "training" / "diffusion" / "log.jsonl"
+    log.parent.mkdir(parents=True)
+    figures = {"loss": 1.0, "structured_iou": 0.8, "released_iou": 0.9, "sobol_iou": 0.7, "drawn_iou": 0.6}
+    lines = [{"step": step, "seconds": 60.0 * minutes, **figures} for step, minutes in enumerate((5, 9, 2, 4, 1))]
+    log.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    assert "| diffusion |  | 4 |  |  | 14 | 80.0 | 90.0 | 70.0 | 60.0 | 1.0000 |" in made_from(tmp_path).text
