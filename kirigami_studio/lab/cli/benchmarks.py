@@ -388,6 +388,7 @@ def judge(arguments: argparse.Namespace) -> int:
     targets = _target_sets(arguments, arguments.exact)
     figures: dict[str, dict[str, object]] = {family: {} for family in targets}
     judgements: dict[tuple[str, str], problem.Judgement] = {}
+    given = " ".join(Path(target).name for target in arguments.targets or ())
     sentences = []
     board = None if arguments.leaderboard is None else _leaderboard(Path(arguments.leaderboard))
     for source in dict.fromkeys(arguments.generators):
@@ -395,7 +396,7 @@ def judge(arguments: argparse.Namespace) -> int:
         for family, outlines in targets.items():
             line.show(f"{family}: {source}")
             judged = problem.judge(called, outlines, grid)
-            figures[family][source], judgements[family, source] = judged.to_json(), judged
+            figures[family][source], judgements[given or family, source] = judged.to_json(), judged
             sentences.append(f"{family}, {source}: {judged.sentence}")
     if board is not None:
         made = plain(problem.entered(board, judgements, grid, arguments.seed))
