@@ -20,7 +20,14 @@ from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.fit_again import fit_again
 from kirigami_studio.pipeline.redesign import COVER_EVENNESS, covered, refitted, trimmed
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import CLOSER_BELOW, COVERED_BELOW, COVERED_CLOSELY, best_of, may_be_closer, needs_cover
+from kirigami_studio.pipeline.run import (
+    CLOSER_BELOW,
+    COVERED_BELOW,
+    COVERED_CLOSELY,
+    best_of,
+    may_be_closer,
+    needs_cover,
+)
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import FabricationSettings
