@@ -26,9 +26,9 @@ from kirigami_studio.lattice.topology import topology
 from kirigami_studio.outlines.outline import Outline
 
 #: Points that stand for each of the two densities.
-POINTS = 600
+POINTS = 450
 #: Neighbours over which the map is smoothed, by an affine fit, and places along each side of the table of the result.
-NEIGHBOURS, TABULATED = 16, 33
+NEIGHBOURS, TABULATED = 12, 33
 #: The plastic number's powers spread points evenly over the square (R2 sequence).
 SPREAD = np.array([0.7548776662466927, 0.5698402909980532])
 
