@@ -21,6 +21,7 @@ from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
+from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
@@ -105,7 +106,8 @@ def pinned(
     shown = shapely.transform(target.polygon, lambda points: pose.inverse().apply(points) * cell_mm)
     panels = panels_left(design, shown, cell_mm, options)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
-    with np.errstate(divide="ignore", invalid="ignore"):  # GEOS leaves such flags behind at sharp corners
+    # GEOS leaves such flags behind at sharp corners.
+    with one_blas_thread(), np.errstate(divide="ignore", invalid="ignore"):
         unwanted = pins_in_holes(deployment, panels, phi, shown, cell_mm)
         needless = [] if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
         shaping = Shaping.of(deployment, cell_mm, phi, options, panels, unwanted, needless)
