@@ -320,7 +320,7 @@ class OutlineModel:
 
     def _followed(self, shape: FloatArray) -> FloatArray:
         """How the given nodes follow the mouths, then the edge hinges: (G, W); none where the rim is not free."""
-        mouths = self._table.mouths if self.free_rim else []
+        mouths = self._table.mouths if self.free_rim else np.zeros(0, np.intp)
         share: FloatArray = self._table.shares(self.hinges(shape))[:, mouths]
         return np.concatenate([share, _hinge_columns(self._table)], axis=1) if self.free_hinges else share
 
