@@ -22,9 +22,9 @@ from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import AngleError, UsageError
-from kirigami_studio.lattice.deployment import check_phi
+from kirigami_studio.lattice.deployment import ZIPPED_BELOW, check_phi
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet import Sheet, replace_sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.basis import Basis
@@ -126,7 +126,9 @@ def polish(
         No two pins of a pinned sheet come nearer, wherever a sheet near by allows that, see ``pinwheel``; 0 for sheets
         without pins.
     free_rim : bool
-        Whether the mouths move too, by at most :data:`~kirigami_studio.lattice.sheet.RIM_REACH` from their even places.
+        Whether the mouths move too, by at most :data:`~kirigami_studio.lattice.sheet.RIM_REACH` from their even places;
+        and the edge hinges, by :data:`~kirigami_studio.lattice.sheet.HINGE_REACH`, unless ``phi`` is 0, where they
+        have to be halfway.
     symmetry : Symmetry, optional
         The sheet keeps this symmetry of the lattice; the pose should lay the target's own upon it.
     excess : float, 0..1
@@ -150,10 +152,12 @@ def polish(
     """
     sheet = Sheet.of(design)
     phi = check_fit(phi, steps, trust)
+    if phi < ZIPPED_BELOW:
+        sheet = replace_sheet(sheet, rim=sheet.rim.folding_shut())
     locked = check_locked(locked, sheet.field)
     if symmetry is not None and locked.any():
         raise UsageError("fit.locks_and_symmetry")
-    model = OutlineModel.of(sheet, phi, free_rim, start_weight)
+    model = OutlineModel.of(sheet, phi, free_rim, start_weight, free_rim and phi >= ZIPPED_BELOW)
     gap = check_gap(least_gap)
     bounds = ShapeBounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
     start = bounds.allowed(bounds.start)
@@ -174,7 +178,9 @@ def polish(
         state = np.append(state, _numbers(align(also.model.outline(start), second.outline.points)))
     descent: _Descent | None = None
     plain = even_panels is not None and not gap and sheet.start is None and sheet.cell == (1.0, 1.0)
-    stiffness = uniform_stiffness(sheet.grid, free_rim, symmetry) if plain and model.voids <= LARGEST_KEPT else None
+    stiffness: FloatArray | None = None
+    if plain and model.voids <= LARGEST_KEPT:
+        stiffness = uniform_stiffness(sheet.grid, free_rim, model.free_hinges, symmetry)
     for phase in phases:
         objective = Objective(model, boundary, terms, phase, least, excess, even_panels, term, also, gap, FIRST_PENALTY)
         descent = _Descent(objective, state, bounds, stiffness) if descent is None else descent.turned_to(objective)
@@ -206,7 +212,9 @@ def polish(
 
 
 @lru_cache(maxsize=32)
-def uniform_stiffness(grid: tuple[int, int], free_rim: bool, symmetry: Symmetry | None) -> FloatArray:
+def uniform_stiffness(
+    grid: tuple[int, int], free_rim: bool, free_hinges: bool, symmetry: Symmetry | None
+) -> FloatArray:
     """Second derivative (V, V) of even panels at the uniform sheet of square cells, by the variables of a fit.
 
     It serves fits from anywhere: finding it takes as long as a step.  After 5 and 15 steps from 18 samples for a heart
@@ -214,7 +222,7 @@ def uniform_stiffness(grid: tuple[int, int], free_rim: bool, symmetry: Symmetry 
     instead of 0.9815 and 0.9898), and so they are from the uniform sheet.
     """
     sheet = Sheet.uniform(*grid)
-    model = OutlineModel.of(sheet, 0.0, free_rim)
+    model = OutlineModel.of(sheet, 0.0, free_rim, free_hinges=free_hinges)
     decoded = model.decoded(np.zeros(model.size))
     curvature = EvenPanels.of(sheet).at(decoded.nodes).curvature()
     return model.node_motion(decoded).curvature(
