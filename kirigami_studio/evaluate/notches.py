@@ -43,8 +43,8 @@ from kirigami_studio.lattice.left_corners import parts_with_corners
 
 #: What sticks out counts so much more than what is missed: strips around hinges look worse than a short edge.
 STICKING_OUT = 1.5
-#: What lies farther off the target than ``keep`` counts so much more: hooks that reach into a hole; horns, strips of panels
-#: to hinges that lie in a notch.  With 6 for horns, too, a puzzle's cover would lose 0.004 of its match for one of three.
+#: What lies farther off the target than ``keep`` counts so much more: hooks that reach into a hole; horns, strips of
+#: panels to hinges that lie in a notch.  With 6 for horns, too, a puzzle's cover would lose 0.004 of its match.
 HOOK, HORN = 6.0, 4.0
 #: Voids whose panels lie on the target by this share stay at first.
 MOSTLY = 0.5

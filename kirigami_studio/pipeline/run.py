@@ -99,8 +99,8 @@ COVERS, COVERED_WELL = 2, 0.98
 #: They are made in any case where no closed design of a run that was fitted to its end matches better than this.
 COVERED_BELOW = 0.97
 #: Where only the first closed design matches less than this, it is covered along its edge, and where that matches less
-#: than the second, with its notches cut out; covers stay where they are worth more than it.  A fish matches by 0.993 then
-#: in the place of 0.9765, a bone by 0.994 (0.9815), a mushroom by 0.990 (0.983), all as symmetric as before (*once*).
+#: than the second, with its notches cut out; covers stay where they are worth more than it.  A fish matches by 0.993
+#: then in the place of 0.9765, a bone by 0.994 (0.9815), a mushroom by 0.990 (0.983), all as symmetric as before.
 CLOSER_BELOW, COVERED_CLOSELY = 0.985, 0.99
 #: The same of pinned sheets: notches are filled until the shape turns back by one of these (radians), it is covered
 #: from so many poses by sheets of both hands, and so many covers are kept.  A fit takes half a second: no arm has to
