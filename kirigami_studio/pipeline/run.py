@@ -29,6 +29,7 @@ from kirigami_studio.pipeline.events import (
     CandidateImproved,
     Event,
     Finished,
+    Phase,
     Progress,
     Result,
     Started,
@@ -373,18 +374,19 @@ class RunPhase:
 
     words: str
     stopped: str
+    phase: Phase
 
     def progress(self, done: int, total: int) -> Progress:
         """How far it is."""
-        return Progress(done, total, tr(self.words, done=done, total=total))
+        return Progress(done, total, tr(self.words, done=done, total=total), self.phase)
 
 
-GUIDING = RunPhase(mark("Fitting: {done} of {total} done"), "run.stopped_polishing")
-POLISHING = RunPhase(mark("Polishing: {done} of {total} done"), "run.stopped_polishing")
-SEARCHING = RunPhase(mark("Searching: {done} of {total} done"), "run.stopped_searching")
-FINISHING = RunPhase(mark("Finishing: {done} of {total} done"), "run.stopped_polishing")
-COVERING = RunPhase(mark("Covering: {done} of {total} done"), "run.stopped_trimming")
-TRIMMING = RunPhase(mark("Trimming: {done} of {total} done"), "run.stopped_trimming")
+GUIDING = RunPhase(mark("Fitting: {done} of {total} done"), "run.stopped_polishing", Phase.FITTING)
+POLISHING = RunPhase(mark("Polishing: {done} of {total} done"), "run.stopped_polishing", Phase.POLISHING)
+SEARCHING = RunPhase(mark("Searching: {done} of {total} done"), "run.stopped_searching", Phase.SEARCHING)
+FINISHING = RunPhase(mark("Finishing: {done} of {total} done"), "run.stopped_polishing", Phase.FINISHING)
+COVERING = RunPhase(mark("Covering: {done} of {total} done"), "run.stopped_trimming", Phase.COVERING)
+TRIMMING = RunPhase(mark("Trimming: {done} of {total} done"), "run.stopped_trimming", Phase.TRIMMING)
 
 
 class _Work:
@@ -414,7 +416,7 @@ class _Work:
                 self.evaluations += 1
                 yield CandidateFound(number, self.found[-1])
             done = start + len(batch)
-            yield Progress(done, total, tr("Candidate {done} of {total}", done=done, total=total))
+            yield Progress(done, total, tr("Candidate {done} of {total}", done=done, total=total), Phase.SAMPLING)
 
     def fill(self, spare: Sequence[Sheet]) -> Iterator[Event]:
         """Score samples in the places of fits from the uniform sheet that were not needed."""
