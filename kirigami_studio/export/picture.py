@@ -58,8 +58,8 @@ MARGIN = 0.05
 DARKNESS, SOFTNESS = 90, 0.6
 #: A head's spot of light is so large and lies so far from the middle, in radii of the head.
 SPOT, SPOT_AT = 0.5, 0.2
-#: Flat sheets of parts are looked for room for so many times as far apart as their targets at most, in so many steps; in
-#: a row they have this gap, in the width of the widest.
+#: Flat sheets of parts lie up to so many times as far apart as their targets, looked for in so many steps; else in
+#: a row with this gap, in widths of the widest.
 MOST_SPREAD, SPREADS, ROW_GAP = 4.0, 24, 0.05
 #: Bitmaps tell whole pixels a metre: 300 dpi become 299.9994.
 SAME_DPI = 0.02
