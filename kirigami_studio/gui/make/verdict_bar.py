@@ -73,15 +73,14 @@ class VerdictBar(QFrame):
         grid.setColumnStretch(1, 1)
         # A button is higher than a line of text: room for one is kept, so that nothing moves when fixes are found.
         grid.setRowMinimumHeight(0, TOUCH)
+        policy = self.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)  # what is above it does not move when the first verdict comes
+        self.setSizePolicy(policy)
         self.hide()
 
     def show_state(self, state: VerdictState) -> None:
         """Show what is known; nothing without a design."""
         self._state = state
-        if state.known:  # from now on its place is kept: what is above it does not move
-            policy = self.sizePolicy()
-            policy.setRetainSizeWhenHidden(True)
-            self.setSizePolicy(policy)
         self.setVisible(state.known)
         self._show_words()
         self._show_fixes()
@@ -103,6 +102,11 @@ class VerdictBar(QFrame):
         self.setProperty("level", level)
         self.style().unpolish(self)
         self.style().polish(self)
+
+    def fit_lines(self) -> None:
+        """Keep the lines that there will be at this width, also while nothing is shown."""
+        self._fit_sentence()
+        self._grid.activate()
 
     def _fit_sentence(self) -> None:
         """Show the worst problem, or the first note, in two lines."""

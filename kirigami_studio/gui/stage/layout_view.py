@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QFontMetrics, QMouseEvent, QPaintEngine, QPainter
+from PySide6.QtGui import QFontMetrics, QMouseEvent, QPaintEngine, QPainter, QPainterPath
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.assembly.posed_pieces import LINE, PieceLook, PosedPieces, Shade, face_of, shaded
@@ -70,6 +70,7 @@ from kirigami_studio.gui.widgets.mismatch_items import (
     paint_mismatch,
     usual_chips,
 )
+from kirigami_studio.gui.widgets.paths import line_path
 from kirigami_studio.gui.widgets.readable import readable_width
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -568,21 +569,24 @@ class LayoutView(Canvas):
         if Overlay.VOID_NUMBERS in self.overlays:
             tiles = transform.to_pixels(heat_tiles(panels, rows, columns))
             paint_numbers(painter, transform.to_pixels(voids).mean(axis=2), room_in(tiles), self.palette_, framed=True)
-        lengths: list[tuple[float, FloatArray]] = []
+        lengths: list[tuple[float, FloatArray, QPainterPath | None]] = []
         if self.areas is not None:
             gap = transform.to_pixels(self.areas.gap.ends)
             if np.linalg.norm(gap[1] - gap[0]) >= SHORTEST_GAP:
-                lengths.append((self.areas.gap.greatest, gap))
+                outer = None if self._target is None else transform.rings_to_pixels(self._target.rings)[0]
+                silhouette = None if outer is None else line_path(outer, closed=True)
+                lengths.append((self.areas.gap.greatest, gap, silhouette))
         if Overlay.SMALL_PARTS in self.overlays:
-            lengths += [(part.size, transform.to_pixels(part.ends(panels))) for part in self._rigid.small]
+            lengths += [(part.size, transform.to_pixels(part.ends(panels)), None) for part in self._rigid.small]
         occupied: list[QRectF] = []
-        for length, ends in lengths:
+        for length, ends, shape in lengths:
             paint_dimension(
                 painter,
                 ends,
                 readable_width(length * self.mm_per_unit),
                 self.palette_,
                 occupied,
+                shape,
             )
 
     @property
