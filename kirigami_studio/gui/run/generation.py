@@ -296,7 +296,7 @@ class RunPlanner:
         return candidate_edits.renew_candidates(document, new, self._session.ranking.key, chosen)
 
     def summary(self, result: Result, before: Document, grid_reason: str = "", seconds: float = 0.0) -> str:
-        """Sentence of the status line on a completed run: times, best match, the reason for a grid that it chose.
+        """Sentence on a completed run: times, best match, the reason for a grid that it chose.
 
         ``seconds`` is all that it took, choices and loading included.
         """
@@ -439,7 +439,7 @@ class DesignRun(QObject):
 
     @property
     def seconds(self) -> float:
-        """Wall time since the run began, choices and loading included; of a completed run all that it took."""
+        """Wall time since the run began, choices and loading included."""
         return self._took or 1e-3 * self._clock.elapsed()
 
     @property
