@@ -204,9 +204,13 @@ class TrimTask:
 
 @dataclass(frozen=True, slots=True)
 class CoverTask:
-    """Make a design that covers the target of a candidate, and cut its notches."""
+    """Make a design that covers the target of a candidate, and cut it along the target.
+
+    Where it is ``notched``, notches are filled in the fit and cut out, whole panels among them.
+    """
 
     candidate: Candidate
+    notched: bool = True
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit and cut, unless the design crosses itself."""
@@ -214,7 +218,9 @@ class CoverTask:
         keep = request.keep if one.trim is None else one.trim.keep
         try:
             room = Room(request.width_mm, request.span_mm)
-            made = covered(one, request.target, keep, stopped, None, least, even, room, request.least_gap)
+            made = covered(
+                one, request.target, keep, stopped, None, least, even, room, request.least_gap, notched=self.notched
+            )
         except KirigamiError:
             return TaskResult(None, 1)
         return TaskResult(made.candidate, made.evaluations)

@@ -369,7 +369,7 @@ def lifted(sheet: Sheet, grid: tuple[int, int], start: StartShape = RECTANGLE) -
     carried = resized_sheet(sheet, *grid)
     z = np.clip(carried.field.log10, -LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
     offsets = np.clip(carried.rim.offsets(*grid), -RIM_REACH, RIM_REACH)
-    field, rim = RatioField.from_log10(z), Rim.moved(*grid, offsets)
+    field, rim = RatioField.from_log10(z), Rim.moved(*grid, offsets, carried.rim.hinges)
     flat = sheet if start.is_plain else uniform_sheet(grid, start)
     return Sheet(field, rim, flat.start, flat.cell)
 

@@ -21,9 +21,9 @@ from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.errors import AngleError, UsageError
-from kirigami_studio.lattice.deployment import check_phi
+from kirigami_studio.lattice.deployment import ZIPPED_BELOW, check_phi
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.lattice.sheet import Sheet, replace_sheet
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.boundary_target import BoundaryTarget
@@ -120,7 +120,9 @@ def polish(
         No two pins of a pinned sheet come nearer, wherever a sheet near by allows that, see ``pinwheel``; 0 for sheets
         without pins.
     free_rim : bool
-        Whether the mouths move too, by at most :data:`~kirigami_studio.lattice.sheet.RIM_REACH` from their even places.
+        Whether the mouths move too, by at most :data:`~kirigami_studio.lattice.sheet.RIM_REACH` from their even places;
+        and the edge hinges, by :data:`~kirigami_studio.lattice.sheet.HINGE_REACH`, unless ``phi`` is 0, where they
+        have to be halfway.
     symmetry : Symmetry, optional
         The sheet keeps this symmetry of the lattice; the pose should lay the target's own upon it.
     excess : float, 0..1
@@ -144,10 +146,12 @@ def polish(
     """
     sheet = Sheet.of(design)
     phi = check_fit(phi, steps, trust)
+    if phi < ZIPPED_BELOW:
+        sheet = replace_sheet(sheet, rim=sheet.rim.folding_shut())
     locked = check_locked(locked, sheet.field)
     if symmetry is not None and locked.any():
         raise UsageError("fit.locks_and_symmetry")
-    model = OutlineModel.of(sheet, phi, free_rim, start_weight)
+    model = OutlineModel.of(sheet, phi, free_rim, start_weight, free_rim and phi >= ZIPPED_BELOW)
     gap = check_gap(least_gap)
     bounds = ShapeBounds.of(sheet, model, symmetry.on(*sheet.grid) if symmetry else None, locked)
     start = bounds.allowed(bounds.start)

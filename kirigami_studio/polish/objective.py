@@ -88,7 +88,8 @@ MATCH_ALONE = FitPhase(0)
 class Objective:
     """Cost of states (shape, pose) for one target.
 
-    A state is a vector: the shape (z of all voids row by row, then offsets of the mouths where the rim is free), then
+    A state is a vector: the shape (z of all voids row by row, then offsets of the mouths and, half open, of the edge
+    hinges where the rim is free), then
     log scale, angle, shift x, shift y of the pose that carries the layout to the target's unit-area frame; and the same
     of the layout at the second target's angle, where there is one.
 
@@ -261,7 +262,10 @@ class Objective:
 
     def _cut_by_chords(self, chords: Chords, shape: FloatArray) -> FloatArray:
         """Derivative (S,) by the shape of what chords cut off."""
-        return np.append(np.zeros(self.model.voids), chords.slopes(self.model.positions(shape)))
+        cut = np.zeros(self.model.size)
+        slopes = chords.slopes(self.model.positions(shape))
+        cut[self.model.voids : self.model.voids + slopes.size] = slopes
+        return cut
 
     def spread(self, look: Look) -> csr_matrix:
         """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L); those

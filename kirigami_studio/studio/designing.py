@@ -50,7 +50,7 @@ from kirigami_studio.polish.pinwheel import gap_in_cells
 from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document, Void
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import FabricationSettings, is_printed, material_for, pin_gap_mm
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, is_printed, material_for, pin_gap_mm
 from kirigami_studio.settings.layers import hinge_layer
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm, span_mm
@@ -367,7 +367,7 @@ def limit_of(document: Document) -> Note | None:
     Pieces on pins are extended beyond their sheet, so what that cannot show says nothing of them.
     """
     opens = not document.candidates and document.settings.phi > CLOSED
-    if opens or pin_gap_mm(document.fabrication):
+    if opens or is_pinned(document.fabrication):
         return None
     return _said(document.candidates, document.target, document.settings.start)
 
@@ -487,7 +487,7 @@ def ranked_as_cut(
 
 
 def _looking_at(number: int, total: int) -> Progress:
-    message = tr("Checking {number} of {total}", number=number, total=total)
+    message = tr("Checking: {number} of {total}", number=number, total=total)
     return Progress(number - 1, total, message, Phase.JUDGING)
 
 

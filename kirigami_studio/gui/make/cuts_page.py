@@ -39,6 +39,8 @@ PLAY_SECONDS = 12.0
 FRAME_MS = 16
 #: Pixels between the title and the numbers at least.
 GAP = 12
+#: A bar narrower than this (pixels) says only time and length of what is cut.
+NARROW = 360
 #: Lines that are shown without scrolling.
 MOST_LINES = 3
 ICONS = {Severity.ERROR: "fault", Severity.WARNING: "warning"}
@@ -320,6 +322,11 @@ class CutBar(QWidget):
         self.slider.setPageStep(max(last // 10, 1))
         self.slider.setValue(last)
         self._show_numbers()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        """A narrow bar leaves out the count, which the slider shows."""
+        super().resizeEvent(event)
+        self.count.setVisible(self.width() >= NARROW)
 
     def _take_step(self, step: int) -> None:
         self._show_numbers()

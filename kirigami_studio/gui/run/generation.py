@@ -141,6 +141,8 @@ class Generation(QObject):
         session = self._session
         if not session.document.other_parts:
             return
+        # A part of the shape and size of one that was just designed has its designs already.
+        self._left = [number for number in self._left if not session.document.parts[number].candidates]
         if not self._left:
             if session.document.part != self._shown:
                 session.apply(target_parts.show_part(session.document, self._shown))
@@ -293,7 +295,8 @@ class RunPlanner:
         grid = result.request.grid if result.request.grid_chosen else None
         new = NewDesigns(result.candidates, facts, seed, result.request.target, grid)
         chosen = preview if preview is not None and preview in (*staying, *result.candidates) else None
-        return candidate_edits.renew_candidates(document, new, self._session.ranking.key, chosen)
+        edit = candidate_edits.renew_candidates(document, new, self._session.ranking.key, chosen)
+        return replace(edit, document=target_parts.with_twins(edit.document, document.part))
 
     def summary(self, result: Result, before: Document, grid_reason: str = "", seconds: float = 0.0) -> str:
         """Sentence on a completed run: times, best match, the reason for a grid that it chose.

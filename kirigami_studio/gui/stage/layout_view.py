@@ -61,6 +61,7 @@ from kirigami_studio.gui.widgets.colour_scale import (
 from kirigami_studio.gui.widgets.fitted_text import fitted
 from kirigami_studio.gui.widgets.legends import Chip, clear_box, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.widgets.mismatch_items import (
+    VERSIONS,
     Mismatch,
     design_mismatch,
     difference_chips,
@@ -370,7 +371,7 @@ class LayoutView(Canvas):
         titles = [tr(title) for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
         legends = bar_boxes(titles, metrics, self.width() - 10.0, self._bars_top())
         if legend:
-            chips = self._fitting([usual_chips(self.palette_, short) for short in (False, True)], metrics)
+            chips = self._fitting([usual_chips(self.palette_, brevity) for brevity in range(VERSIONS)], metrics)
             legends += legend_boxes(chips, metrics, self.width(), self.height())
         return clear_box(bounds, view, self.margin(), legends)
 
@@ -378,12 +379,12 @@ class LayoutView(Canvas):
         return CAPTION_HEIGHT if self.caption else 10.0
 
     def _fitting(self, versions: list[list[Chip]], metrics: QFontMetrics) -> list[Chip]:
-        """The first of these legends that fits into one row, else the last."""
-        for chips in versions:
-            rows = {box.top() for box in legend_boxes(chips, metrics, self.width(), self.height())}
-            if len(rows) <= 1 and self.width() >= NARROW:
-                return chips
-        return versions[-1]
+        """The first of these legends where it fits into one row, else the next one that fits into two, or the last."""
+        size = self.width(), self.height()
+        rows = [len({box.top() for box in legend_boxes(chips, metrics, *size)}) for chips in versions]
+        if rows[0] <= 1 and self.width() >= NARROW:
+            return versions[0]
+        return next((chips for chips, used in zip(versions[1:], rows[1:], strict=True) if used <= 2), versions[-1])
 
     def legend(self, metrics: QFontMetrics) -> list[tuple[Chip, QRectF]]:
         """What the labels at the bottom say, and where (pixels)."""
@@ -400,7 +401,7 @@ class LayoutView(Canvas):
         chips = found
         if self.areas is not None:
             areas, mm = self.areas, self.mm_per_unit
-            versions = [difference_chips(areas, mm, self.palette_, short) + found for short in (False, True)]
+            versions = [difference_chips(areas, mm, self.palette_, brevity) + found for brevity in range(VERSIONS)]
             chips = self._fitting(versions, metrics)
         return list(zip(chips, legend_boxes(chips, metrics, self.width(), self.height()), strict=True))
 

@@ -347,7 +347,7 @@ class RefineBar(QWidget):
             parts += [label(tr(caption), own), (own, 1)]
         width = tr("Target width in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
         height = tr("Target height in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
-        length = partial(decimal_field, LengthField, "", 0.1, LARGEST_MM, suffix=tr(" mm"))
+        length = partial(decimal_field, LengthField, "", 0.1, LARGEST_MM, suffix=tr(" mm"), width=116)
         self.width_ = length(accessible=tr("Target width"), tip=width)
         self.height_ = length(accessible=tr("Target height"), tip=height)
         parts += [label(tr("Size"), self.width_), self.width_]
