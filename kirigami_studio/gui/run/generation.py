@@ -305,7 +305,8 @@ class RunPlanner:
         """
         plan, document = self.plan, self._session.document
         if plan is None or not plan.joins:
-            score = result.best.score
+            designing = readable_time(max(seconds - result.judging_seconds, result.seconds))
+            judging = readable_time(result.judging_seconds)
             if result.best in result.refusals:
                 return tr_n(
                     "{count} design in {designing}, checked as cut in {judging}. It cannot be cut in this material and "
@@ -313,8 +314,8 @@ class RunPlanner:
                     "{count} designs in {designing}, checked as cut in {judging}. None can be cut in this material and "
                     "size: the verdict says why.",
                     len(result.candidates),
-                    designing=readable_time(max(seconds - result.judging_seconds, result.seconds)),
-                    judging=readable_time(result.judging_seconds),
+                    designing=designing,
+                    judging=judging,
                 )
             told = tr_n(
                 "{count} design in {designing}, checked as cut in {judging}: match {match:.1f} %, panels "
@@ -322,10 +323,10 @@ class RunPlanner:
                 "{count} designs in {designing}, checked as cut in {judging}. Best: match {match:.1f} %, panels "
                 "±{variation:.0f} %.",
                 len(result.candidates),
-                designing=readable_time(max(seconds - result.judging_seconds, result.seconds)),
-                judging=readable_time(result.judging_seconds),
+                designing=designing,
+                judging=judging,
                 match=100 * result.ranking.made_match(result.best),
-                variation=100 * score.evenness.area_cv,
+                variation=100 * result.best.score.evenness.area_cv,
             )
             return f"{told} {grid_reason}".strip()
         known = set(before.candidates)
