@@ -41,10 +41,11 @@ from kirigami_studio.polish.vertex_drag import VertexDrag
 #: Steps of the fit before trimming.
 COVER_STEPS = 12
 #: Even panels count so many times as much in a cover as in whole sheets: it has match to spare, and small panels in a
-#: thin arm run into each other before it has closed.  In film, a leaf's covers jammed at 5 degrees and showed 0.972 and
-#: 0.928 of it as cut; with this they close at 0.989.  Twice as much is not enough for them, eight times too much for a
-#: plug.  Covers that are cut along the edge alone have the weight of the last steps of whole sheets: with 1 a mushroom's
-#: matches by 0.982 in the place of 0.990 (at 0 by 0.992, with panels that differ more), closed it does by 0.983.
+#: thin arm run into each other before it has closed.  In film, a leaf's covers jammed at 5 degrees and showed 0.972
+#: and 0.928 of it as cut; with this they close at 0.989.  Twice as much is not enough for them, eight times too much
+#: for a plug.  Covers that are cut along the edge alone have the weight of the last steps of whole sheets: with 1 a
+#: mushroom's matches by 0.982 in the place of 0.990 (at 0 by 0.992, with panels that differ more), closed it does by
+#: 0.983.
 COVER_EVENNESS, EDGE_EVENNESS = 4.0, 0.3
 
 #: Accepted steps of one fit that the user asks for; most end before that because nothing more is gained.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QRect, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QRect, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QHideEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QLabel, QPlainTextEdit, QSizePolicy, QWidget
 
@@ -129,7 +129,8 @@ class MessageBar(QFrame):
         above the others where all of them are too wide for a line.
         """
         across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
-        answers, others = (self._buttons.itemAt(place).sizeHint() for place in (0, 1))
+        halves = [self._buttons.itemAt(place) for place in (0, 1)]
+        answers, others = (half.sizeHint() if half is not None else QSize(0, 0) for half in halves)
         margins = self.contentsMargins() if (layout := self.layout()) is None else layout.contentsMargins()
         line = answers.width() + self._buttons.spacing() + others.width()
         wide = room.width() - margins.left() - margins.right() - 2 * self.frameWidth()

@@ -162,7 +162,9 @@ class StateSheet(BoardStates):
             raise SessionError("There is no design to name.")
         label = document.label_of(session.stage.candidate)
         if label is not None:
-            window.services.labels.set(label, LONG_NAME[:LONGEST_NAME], "The lobes are even; cut this one for the fair.")
+            window.services.labels.set(
+                label, LONG_NAME[:LONGEST_NAME], "The lobes are even; cut this one for the fair."
+            )
         renamed = replace(document.target, name=LONG_NAME)
         session.restart(replace(session.document, target=renamed), Path(f"{LONG_NAME}.kiri"))
         window.services.fabrication.change(machine="cricut-maker", material="polypropylene-co2")
