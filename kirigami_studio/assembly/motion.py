@@ -213,10 +213,13 @@ def polygons(corners: ComplexArray) -> GeometryArray:
     return np.asarray(shapely.polygons(as_points(corners)), dtype=object).reshape(-1)
 
 
-def discs(centres: ComplexArray, radius: FloatArray | float) -> GeometryArray:
-    """Polygons (K,) in circles about ``centres`` (K,), with vertices on them."""
-    radii = np.broadcast_to(radius, centres.shape)
-    return polygons(centres[:, None] + radii[:, None] * _corners(float(radii.max(initial=0.0)), ROUNDNESS_MM))
+def discs(centres: ComplexArray, radius: FloatArray | float, beyond: float = 0.0) -> GeometryArray:
+    """Polygons (K,) for circles about ``centres`` (K,), with corners as far outside of them as ``beyond``, mm.
+
+    Their sides are inside by ``ROUNDNESS_MM`` at most.
+    """
+    radii = np.broadcast_to(radius, centres.shape) + beyond
+    return polygons(centres[:, None] + radii[:, None] * _corners(float(radii.max(initial=0.0)), ROUNDNESS_MM + beyond))
 
 
 def _corners(radius: float, tolerance: float) -> ComplexArray:
@@ -226,9 +229,14 @@ def _corners(radius: float, tolerance: float) -> ComplexArray:
 
 
 def swept_discs(
-    centres: ComplexArray, drifts: ComplexArray, turns: FloatArray, radius: FloatArray, tolerance: float
+    centres: ComplexArray,
+    drifts: ComplexArray,
+    turns: FloatArray,
+    radius: FloatArray,
+    tolerance: float,
+    within: float = 0.0,
 ) -> GeometryArray:
-    """Areas that contain those swept by discs along arcs, and exceed them by ``tolerance``.
+    """Areas that contain those swept by discs along arcs but for ``within``, and exceed them by ``tolerance``.
 
     Parameters
     ----------
@@ -239,7 +247,7 @@ def swept_discs(
     turns : (K,) float, radians
         Within pi of 0.
     radius : (K,) float, mm
-    tolerance : float, mm
+    tolerance, within : float, mm
 
     Returns
     -------
@@ -247,6 +255,7 @@ def swept_discs(
         Of each the part of the ring, and the discs at both ends; they overlap.
     """
     made = np.empty(len(centres), dtype=object)
+    radius, tolerance = radius - within, tolerance + within
     reach = np.abs(drifts) + radius
     largest = np.abs(turns).max(initial=0.0)
     # The vertices of the outer arc lie outside of it, by reach (1 / cos(half a step) - 1), or reach step^2 / 8.

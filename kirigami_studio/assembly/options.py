@@ -9,6 +9,8 @@ from kirigami_studio.foundation.errors import UsageError
 
 #: Sizes of pinned pieces, mm, are below this.
 LARGEST_MM = 1000.0
+#: Share of a clearance that polygons may take of it for ears, and as much for notches, and most of it, mm.
+ROUNDED, MOST_ROUNDED_MM = 0.025, 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +86,15 @@ class PinOptions:
     def keep_mm(self) -> float:
         """Radius about a pin that trimming leaves, mm: the wall, and no less than half a neck."""
         return max(0.5 * self.pin_mm + self.asked_wall_mm, 0.5 * self.neck_mm + 0.1)
+
+    @property
+    def rounded_mm(self) -> float:
+        """How far corners of polygons lie outside of ears, and inside of notches, mm.
+
+        With sides as far on the other side of the arcs they need a quarter fewer corners.  Printed pieces keep all of
+        their clearance.
+        """
+        return 0.0 if self.in_one_plane else min(ROUNDED * self.clearance_mm, MOST_ROUNDED_MM)
 
     @property
     def rim_mm(self) -> float:

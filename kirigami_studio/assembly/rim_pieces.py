@@ -163,7 +163,7 @@ def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) ->
         the rim of a hole not at all, for the flat sheet is open there, too.
     """
     holes = np.array([shapely.union_all([Polygon(ring) for ring in state.outline.interiors])], dtype=object)
-    motion, keep = shaping.motion, shaping.options.keep_mm
+    motion, keep, beyond = shaping.motion, shaping.options.keep_mm, shaping.options.rounded_mm
     outside = shapely.area(shapely.difference(shaping.placed(state.turn), state.outline))
     shown = _Shown(shaping, other) if math.isfinite(spare) else None
     for index in np.argsort(-outside):
@@ -172,7 +172,7 @@ def trim_to(shaping: Shaping, state: EndState, other: EndState, spare: float) ->
         here = np.array([index])
         mine = motion.brought_back(np.array([state.outline], dtype=object), here, state.turn)[0]
         body = shaping.bodies[index]
-        walls = shapely.union_all(discs(motion.corners[index][motion.hinged[index]], keep))
+        walls = shapely.union_all(discs(motion.corners[index][motion.hinged[index]], keep, beyond))
         hole = motion.brought_back(holes, here, state.turn)[0]
         in_hole = shared(body, hole).area > LEAST_PART
         counts = less(body, hole) if in_hole else body

@@ -19,7 +19,8 @@ from kirigami_studio.evaluate.kept_panels import PanelTable
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from kirigami_studio.lattice.deployment import Deployment
 
-#: Notches contain the exact sweep of ears and clearance, and exceed it by this at most, mm.
+#: Notches exceed the exact sweep of ears and clearance by this at most, mm, and contain it but for what their options
+#: round off.
 NOTCH_TOLERANCE = 0.01
 #: Sagitta of the chords by which bodies are swept, mm: an extension keeps as much more distance than it has to.
 BODY_TOLERANCE = 0.15
@@ -195,7 +196,7 @@ class Shaping:
             self.ear_radius.ravel()[cutting] = np.minimum(self.ear_radius.ravel()[cutting], radii.pop(0))
         self.cutting = set(motion.nodes.ravel()[cutting].tolist())
         for ear in np.unique(self._straps.ear).tolist():
-            own = discs(self._straps.centre[self._straps.ear == ear], self._straps.radius)
+            own = discs(self._straps.centre[self._straps.ear == ear], self._straps.radius, options.rounded_mm)
             plane = int(motion.plane[ear // 4])
             hull = Polygon(shapely.get_coordinates(shapely.union_all(own).convex_hull))
             self._parts[plane] = self._parts[plane].with_more(ear // 4, np.array([hull], dtype=object))
@@ -215,11 +216,12 @@ class Shaping:
         """Cut the notches of some panels; ``passing`` are the ears that may touch each."""
         motion = self.motion
         owner, corner = np.nonzero(motion.hinged & np.isin(np.arange(len(blanks)), fresh)[:, None])
-        ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner])
+        beyond = self.options.rounded_mm
+        ears = discs(motion.corners[owner, corner], self.ear_radius[owner, corner], beyond)
         place, straps = np.zeros(len(blanks), dtype=np.int64), self._straps
         place[fresh] = np.arange(len(fresh))
         strapped = np.isin(straps.ear // 4, fresh)
-        parts = np.concatenate([blanks[fresh], ears, discs(straps.centre[strapped], straps.radius)])
+        parts = np.concatenate([blanks[fresh], ears, discs(straps.centre[strapped], straps.radius, beyond)])
         owners = np.concatenate([np.arange(len(fresh)), place[owner], place[straps.ear[strapped] // 4]])
         whole = _united_by(parts, owners, len(fresh))
         mover = np.concatenate([np.zeros(0, dtype=np.int64), *(passing[index] for index in fresh)])
@@ -340,7 +342,8 @@ class Shaping:
         motion = self.motion
         grown = np.broadcast_to(radius + self.options.clearance_mm, centre.shape)
         drift = motion.seen_drift(ear // 4, seen, centre)
-        return swept_discs(centre, drift, motion.sense[seen] * motion.opening, grown, NOTCH_TOLERANCE)
+        turns, within = motion.sense[seen] * motion.opening, self.options.rounded_mm
+        return swept_discs(centre, drift, turns, grown, NOTCH_TOLERANCE, within)
 
     @cached_property
     def _sweeps(self) -> list[tuple[GeometryArray, shapely.STRtree]]:

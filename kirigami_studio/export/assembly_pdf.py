@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from io import BytesIO
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -241,11 +242,12 @@ class _Drawing:
         placed = {piece.id: place(piece, piece.outline) for piece in pieces}
         everything = np.concatenate([*placed.values(), *as_rings(target)])
         low, high = everything.min(axis=0), everything.max(axis=0)
+        coarse = _coarse([placed[piece.id] - low for piece in pieces])
         shapes = [
             _Shape(
                 piece.layer,
                 (
-                    _coarse(placed[piece.id] - low),
+                    outline,
                     *(place(piece, ring) - low for ring in piece.openings),
                     *(place(piece, hole.centre + 0.5 * hole.diameter_mm * CIRCLE) - low for hole in piece.holes),
                 ),
@@ -254,7 +256,7 @@ class _Drawing:
                 _room(piece.outline, piece.label_mm),
                 _lines(piece, partial(place, piece), low),
             )
-            for piece in pieces
+            for piece, outline in zip(pieces, coarse, strict=True)
         ]
         pins = _pin_places(assembly, phi) - low
         width, height = (high - low).tolist()
@@ -270,17 +272,18 @@ class _Drawing:
     @classmethod
     def of_bed(cls, bed: CutBed, under: FloatArray | None = None) -> _Drawing:
         """A bed as it is cut, a frame first, in which the outline of a hinge layer lies."""
+        placed = sorted(bed.placed, key=lambda one: one[0].piece.id != bed.frame)
         shapes = [
             _Shape(
                 bed.layer,
-                (_coarse(place.put(cuts.outline)), *(place.put(ring) for ring in cuts.openings),
+                (outline, *(place.put(ring) for ring in cuts.openings),
                  *(place.put(hole.centre + 0.5 * hole.diameter_mm * CIRCLE) for hole in cuts.holes)),
                 cuts.piece.id,
                 place.put(np.asarray(cuts.piece.label_at, dtype=np.float64)),
                 _room(cuts.piece.outline, cuts.piece.label_mm),
                 _lines(cuts.piece, place.put, np.zeros(2)),
             )
-            for cuts, place in sorted(bed.placed, key=lambda placed: placed[0].piece.id != bed.frame)
+            for (cuts, place), outline in zip(placed, _coarse([at.put(one.outline) for one, at in placed]), strict=True)
         ]  # fmt: skip
         if under is not None:
             shapes[0] = replace(shapes[0], rings=(*shapes[0].rings, under))
@@ -317,11 +320,12 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
     for ring in drawing.target:
         fill = picture.TARGET_FILL if ring is drawing.target[0] else picture.PAPER
         _fill(canvas, corner + scale * ring, fill)
+    rings = iter(_coarse([scale * ring for shape in drawing.shapes for ring in shape.rings]))
     for shape in drawing.shapes:
         stroke_colour(canvas, EDGES[shape.layer])
-        for at, ring in enumerate(shape.rings):
+        for at, ring in enumerate(islice(rings, len(shape.rings))):
             _ink(canvas, FILLS[shape.layer] if at == 0 else picture.PAPER)
-            canvas.drawPath(path_of(corner + _coarse(scale * ring), closed=True), stroke=1, fill=1, fillMode=1)
+            canvas.drawPath(path_of(corner + ring, closed=True), stroke=1, fill=1, fillMode=1)
         stroke_colour(canvas, picture.NAME_COLOUR)
         for line in shape.lines:
             coarse = shapely.simplify(LineString(scale * line), UNSEEN_MM)
@@ -343,10 +347,14 @@ def _draw(canvas: Any, drawing: _Drawing, scale: float, corner: FloatArray) -> N
         canvas.drawString(x + 0.2 * BESIDE_POINTS, y - BESIDE_POINTS, number)
 
 
-def _coarse(ring: FloatArray) -> FloatArray:
-    """A ring (L, 2), mm, without corners that nobody sees."""
-    found: FloatArray = shapely.get_coordinates(shapely.simplify(shapely.LinearRing(ring), UNSEEN_MM))[:-1]
-    return found
+def _coarse(rings: Sequence[FloatArray]) -> list[FloatArray]:
+    """Rings, each (L, 2), mm, without corners that nobody sees."""
+    if not rings:
+        return []
+    lines = shapely.linearrings(np.concatenate(rings), indices=np.repeat(np.arange(len(rings)), list(map(len, rings))))
+    points, ring = shapely.get_coordinates(shapely.simplify(lines, UNSEEN_MM), return_index=True)
+    ends = np.cumsum(np.bincount(ring, minlength=len(rings)))
+    return [one[:-1] for one in np.split(points, ends[:-1])]
 
 
 def _fill(canvas: Any, ring: FloatArray, colour: Colour) -> None:

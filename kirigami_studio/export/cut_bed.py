@@ -39,6 +39,8 @@ WEB_MM = 1.0
 BEAM_CHORD_MM = 1e-4
 #: Material (mm) that may be left beside a sharp corner beyond the fillet of a beam.
 SHARP_MM = 5e-4
+#: Sharp corners of a beam's way are cut off within so many of its half widths from what they would leave.
+TIPS_NEAR = 2.0
 #: Layers of a sheet, and the stem of the file of all parts behind them.
 LAYERS, BOARD = 2, "board"
 #: Distance of numbers from the marks of tabs, and from lines of artwork where there is room, mm.
@@ -126,8 +128,10 @@ def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> lis
     asked = Polygon(ring)
     area: BaseGeometry = shapely.buffer(asked, by_mm, join_style="mitre", mitre_limit=MITRE_LIMIT)
     least = closed_by(asked, by_mm)
-    if farthest(area.buffer(-by_mm, quad_segs=beam_chords(by_mm)), least) > SHARP_MM:
-        area = _with_fewer_corners(shapely.buffer(asked, by_mm, quad_segs=beam_chords(by_mm)), asked, by_mm)
+    finished = area.buffer(-by_mm, quad_segs=beam_chords(by_mm))
+    beyond = shapely.get_coordinates(finished)[distances(finished, least) > SHARP_MM]
+    if len(beyond):
+        area = _round_near(area, beyond, asked, least, by_mm)
     if not isinstance(area, Polygon) or area.is_empty:
         raise FabricationError("pieces.narrower_than_kerf", piece=piece.id, kerf_mm=kerf_mm)
     area = shapely.orient_polygons(area)
@@ -135,14 +139,40 @@ def _offset(piece: Piece, ring: FloatArray, by_mm: float, kerf_mm: float) -> lis
     return [shapely.get_coordinates(one)[:-1] for one in (area.exterior, *pockets)]
 
 
+def _round_near(
+    sharp: BaseGeometry, beyond: FloatArray, asked: Polygon, least: BaseGeometry, by_mm: float
+) -> BaseGeometry:
+    """The way of a beam with sharp corners, but round those near some places.
+
+    Parameters
+    ----------
+    sharp : geometry
+        With sharp corners everywhere.
+    beyond : (K, 2) float, mm
+        Where that leaves more than fillets.
+    asked : Polygon
+    least : geometry
+        What a beam leaves at least.
+    by_mm : float
+    """
+    way = shapely.buffer(asked, by_mm, quad_segs=beam_chords(by_mm))
+    if by_mm < 0.0:  # openings, which are few
+        return way
+    tips = shapely.get_parts(shapely.difference(sharp, way))
+    near = shapely.STRtree(tips).query(shapely.points(beyond), predicate="dwithin", distance=TIPS_NEAR * by_mm)[1]
+    blunt = shapely.difference(sharp, shapely.union_all(tips[np.unique(near)]))
+    if isinstance(blunt, Polygon) and isinstance(way, Polygon) and not way.interiors:
+        blunt = Polygon(blunt.exterior)  # other tips may lie round one
+    # Between both ways, it takes nothing from what was asked for.
+    left = blunt.buffer(-by_mm, quad_segs=beam_chords(by_mm))
+    return blunt if farthest(left, least) <= SHARP_MM else _with_fewer_corners(way, asked, by_mm)
+
+
 def _with_fewer_corners(area: BaseGeometry, asked: Polygon, by_mm: float) -> BaseGeometry:
     """The way of a beam round its corners without those that finished shapes do not show.
 
-    What a chord cuts off the way round a narrow spike takes many times as much from the tip of the spike.  Openings,
-    which are few, keep all.
+    What a chord cuts off the way round a narrow spike takes many times as much from the tip of the spike.
     """
-    if by_mm < 0.0:
-        return area
     fewer = shapely.simplify(area, SHARP_MM)
     finished = fewer.buffer(-by_mm, quad_segs=beam_chords(by_mm))
     return fewer if farthest(asked, finished) <= 2.0 * SHARP_MM else area
@@ -164,9 +194,15 @@ def closed_by(area: Polygon, half_mm: float) -> BaseGeometry:
 
 def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
     """Farthest that a corner of a shape is from another shape, mm."""
+    found = distances(one, other)
+    return float(found.max()) if len(found) else math.inf
+
+
+def distances(one: BaseGeometry, other: BaseGeometry) -> FloatArray:
+    """How far (K,), mm, corners of a shape are from another shape; bounds of what is below ``SHARP_MM``."""
     corners, others = shapely.get_coordinates(one), shapely.get_coordinates(other)
     if not len(corners) or not len(others):
-        return math.inf
+        return np.full(len(corners), math.inf)
     near = np.asarray(cKDTree(others).query(corners)[0])
     # From corner to corner is quick, and nearly always near enough; of the others most lie in the shape.
     far = np.flatnonzero(near > SHARP_MM)
@@ -177,7 +213,7 @@ def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
         if len(outside):
             points, sides = shapely.points(corners[outside]), shapely.STRtree(_sides(other))
             near[outside] = sides.query_nearest(points, return_distance=True, all_matches=False)[1]
-    return float(near.max())
+    return near
 
 
 def _sides(shape: BaseGeometry) -> npt.NDArray[np.object_]:

@@ -34,6 +34,8 @@ OUTLINE_MM, HOLE_MM, OVERLAP_MM2 = 2e-3, 1e-3, 0.01
 ROUND_SHARE = 0.9
 #: Corners of outlines that agree within this (mm) are the same.
 SAME_MM = 1e-7
+#: Bulges that agree within this bend no stroke of a piece by a tenth of a micrometre more.
+SAME_BULGE = 1e-5
 #: Outlines are those of a piece if their middles, and the roots of their areas, are nearer than this (mm).
 SAME_PLACE_MM = 0.5
 #: Share of its margin that a number may be nearer to a cut: rounding.
@@ -73,17 +75,20 @@ class FoundPiece:
 class KnownOutlines:
     """Outlines in files of one assembly; equal ones are looked at once.
 
-    Files of several kinds mostly have the same numbers, and readers agree.  Outlines whose corners agree within
-    ``SAME_MM`` are finished, compared with their pieces and moved once; holes are compared in every file.
+    Files of several kinds mostly have the same numbers, and readers agree.  Beds whose strokes agree within ``SAME_MM``
+    are looked at once, and outlines that do are finished, compared with their pieces and moved once.
 
     Attributes
     ----------
+    beds : dict
+        What was found on each bed by all of its strokes.
     finished : dict
         Finished area, and how far that is from the one asked for, of each piece and ways of the beam.
     moved : dict
         What moving them has found, by the identities of the areas, which ``finished`` keeps.
     """
 
+    beds: dict[tuple[object, ...], tuple[list[Finding], list[FoundPiece]]] = field(default_factory=dict)
     finished: dict[tuple[object, ...], tuple[Polygon, float]] = field(default_factory=dict)
     moved: dict[tuple[int, ...], Finding] = field(default_factory=dict)
 
@@ -109,6 +114,28 @@ def found_pieces(
     pieces : list of FoundPiece
         In the order of the bed; none where pieces are missing.
     """
+    known = KnownOutlines() if known is None else known
+    key = (bed.name, *_drawn(strokes))
+    if key not in known.beds:
+        known.beds[key] = _pieces_among(strokes, bed, kerf_mm, known)
+    return known.beds[key]
+
+
+def _drawn(strokes: Sequence[Stroke]) -> tuple[object, ...]:
+    """All that is looked at in strokes, the same for those that agree within rounding."""
+    points = [stroke.points for stroke in strokes]
+    bulges = [np.zeros(len(one.points)) if one.bulges is None else one.bulges for one in strokes]
+    kinds = tuple((stroke.layer, stroke.closed, len(stroke.points)) for stroke in strokes)
+    return kinds, *(
+        np.rint(np.concatenate([np.zeros(0), *(one.ravel() for one in values)]) / step).tobytes()
+        for values, step in ((points, SAME_MM), (bulges, SAME_BULGE))
+    )
+
+
+def _pieces_among(
+    strokes: Sequence[Stroke], bed: CutBed, kerf_mm: float, known: KnownOutlines
+) -> tuple[list[Finding], list[FoundPiece]]:
+    """The same for strokes that are not known."""
     cuts = [stroke for stroke in strokes if stroke.layer not in ENGRAVED_LAYERS]
     if not all(stroke.closed and len(stroke.points) > 1 for stroke in cuts):
         return [Finding.judged(False, "verify.pieces_open")], []
@@ -118,8 +145,7 @@ def found_pieces(
     if numbers is None:
         counts = {"count": len(outer), "planned": len(bed.pieces)}
         return [Finding.judged(False, "verify.pieces_lost", **counts)], []
-    finished = {} if known is None else known.finished
-    pieces = []
+    finished, pieces = known.finished, []
     for (piece, place), number in zip(bed.placed, numbers, strict=True):
         at = int(outer[number])
         holes, openings = _holes_and_openings([cuts[one] for one in inner[at]], piece, place, kerf_mm)

@@ -231,6 +231,13 @@ class OutlineModel:
         self.size = self.voids + mouths + hinges
         self._mouths = slice(self.voids, self.voids + mouths)
         self._given = self._given_nodes(self._rim.positions, self._rim.hinges)
+        #: Along straight sides, with edge hinges that stay, mouths move by as much as their offsets: given nodes
+        #: without any, how these follow the mouths (G, R), and the way (R, 2).
+        self._straight: tuple[FloatArray, FloatArray, FloatArray] | None = None
+        if free_rim and start is None and not self.free_hinges:
+            even, hinges_kept = self._table.even, self._rim.hinges
+            follow = self._table.shares(hinges_kept)[:, self._table.mouths]
+            self._straight = self._given_nodes(even, hinges_kept), follow, self._path.slopes(even)
         #: What long chords of a round start cost, where the rim is free.
         self.chords = Chords.of(self._path, start_weight) if free_rim else None
 
@@ -313,7 +320,7 @@ class OutlineModel:
 
     def _followed(self, shape: FloatArray) -> FloatArray:
         """How the given nodes follow the mouths, then the edge hinges: (G, W); none where the rim is not free."""
-        mouths = self._table.mouths if self.free_rim else []
+        mouths = self._table.mouths if self.free_rim else np.zeros(0, np.intp)
         share: FloatArray = self._table.shares(self.hinges(shape))[:, mouths]
         return np.concatenate([share, _hinge_columns(self._table)], axis=1) if self.free_hinges else share
 
@@ -321,6 +328,8 @@ class OutlineModel:
         """Derivative of the points of mouths and edge hinges by their offsets, (W, 2); none without a free rim."""
         if not self.free_rim:
             return np.zeros((0, 2))
+        if self._straight is not None:
+            return self._straight[2]
         positions = self.positions(shape)
         slopes = self._path.slopes(positions)
         if not self.free_hinges:
@@ -331,6 +340,15 @@ class OutlineModel:
     def _given_nodes(self, positions: FloatArray, hinges: FloatArray) -> FloatArray:
         nodes = np.zeros((self.node_count, 2))
         nodes[self._table.node] = self._table.shares(hinges) @ self._path.anchors(positions)
+        return nodes
+
+    def _given_of(self, shape: FloatArray) -> FloatArray:
+        """Compact nodes (N, 2) of which only the given ones count."""
+        if self._straight is None:
+            return self._given_nodes(self.positions(shape), self.hinges(shape)) if self.free_rim else self._given.copy()
+        even, follow, along = self._straight
+        nodes = even.copy()
+        nodes[self._table.node] += follow @ (shape[self.voids :, None] * along)
         return nodes
 
     def _pull(self, decoded: CompactLayout) -> FloatArray:
@@ -344,17 +362,16 @@ class OutlineModel:
     def decoded(self, shape: FloatArray) -> CompactLayout:
         """The compact sheet of a shape (S,)."""
         plan, h = self._plan, self._plan.h_count
-        given = self._given_nodes(self.positions(shape), self.hinges(shape)) if self.free_rim else self._given
+        nodes = self._given_of(shape)
         x = np.power(10.0, shape[: self.voids])[plan.void]
         flat = np.zeros(2 * x.size + 1)
         np.divide(1.0, 1.0 + x, out=flat[1:-1:2])
         np.multiply(x, flat[1:-1:2], out=flat[:-1:2])
         entry, row, node = plan.to_given
-        known, each = np.zeros((x.size, 2)), flat[entry, None] * given[node]
+        known, each = np.zeros((x.size, 2)), flat[entry, None] * nodes[node]
         for axis in (0, 1):
             known[plan.resting, axis] = np.bincount(row, each[:, axis], plan.resting.size)
         at_h = plan.band.solution(plan.paths(flat), known[:h] + plan.h_on_v.times(flat, known[h:]))
-        nodes = given.copy()
         nodes[plan.free[:h]] = at_h
         nodes[plan.free[h:]] = plan.v_on_h.times(flat, at_h) + known[h:]
         return CompactLayout(shape, nodes, flat)
