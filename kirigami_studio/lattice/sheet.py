@@ -68,7 +68,7 @@ class RimTable:
     between: IntArray  #: (E, 2); the anchors before and after each of them, clockwise
 
     def shares(self, hinges: FloatArray) -> FloatArray:
-        """``share`` with edge hinges moved by ``hinges`` (E,) from halfway; none where that is empty."""
+        """``share`` with edge hinges moved from halfway by ``hinges`` (E,); none if that is empty."""
         if not hinges.size:
             return self.share
         moved = self.share.copy()
