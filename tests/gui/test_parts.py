@@ -149,6 +149,25 @@ def test_that_return_takes_what_is_checked_as_one_step(window, picker, until) ->
     assert window.session.document.target is None
 
 
+def test_that_a_drawing_whose_parts_have_no_names_gives_target_and_files_its_own(
+    window: MainWindow, files: object, until: Until, tmp_path: Path
+) -> None:
+    body = '<circle cx="30" cy="40" r="20"/><rect x="60" y="25" width="30" height="30"/>'
+    for parts in (1, 2):
+        window.files.open(str(written(tmp_path, body, "badge.svg")))
+        asked = opened(window, until)
+        if parts == 2:
+            asked.all.click()
+            settled(asked, until)
+        before = window.session.document.target
+        asked.take.click()
+        until(lambda: window.session.document.target is not before)  # noqa: B023 - called at once
+        target = window.session.document.target
+        assert target is not None and target.name == "badge", parts
+        window.commands["save_as"].trigger()
+        assert files.proposals[-1].startswith("badge")  # type: ignore[attr-defined]
+
+
 def test_that_a_click_in_the_picture_takes_a_part_in_and_bridges_it(window, picker, until) -> None:
     click_part(picker, 75, -40)
     settled(picker, until)

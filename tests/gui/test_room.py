@@ -228,7 +228,7 @@ def test_that_pictures_stand_in_the_middle_of_their_list_whatever_its_width(qtbo
         item.setSizeHint(QSize(100, 60))
     for width, columns in ((150, 1), (180, 1), (290, 2)):
         made.resize(width, 100)
-        QApplication.processEvents()
+        qtbot.waitUntil(made.verticalScrollBar().isVisible)
         boxes = [made.visualItemRect(made.item(row)) for row in range(made.count())]
         assert len({box.left() for box in boxes}) == columns
         left, right = min(box.left() for box in boxes), made.viewport().width() - max(box.right() for box in boxes)

@@ -103,11 +103,6 @@ class VerdictBar(QFrame):
         self.style().unpolish(self)
         self.style().polish(self)
 
-    def fit_lines(self) -> None:
-        """Keep the lines that there will be at this width, also while nothing is shown."""
-        self._fit_sentence()
-        self._grid.activate()
-
     def _fit_sentence(self) -> None:
         """Show the worst problem, or the first note, in two lines."""
         margins = self._grid.contentsMargins()

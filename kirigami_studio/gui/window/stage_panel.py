@@ -446,8 +446,6 @@ class StagePanel(Card):
         self._place_plots()
         self.ends.set_low(self.height() < LOW)
         self.body.activate()
-        self.verdict.fit_lines()
-        self.body.activate()
 
     def _update_overlays(self) -> None:
         chosen = frozenset(overlay for overlay, switch in self.overlays.items() if switch.isChecked())
