@@ -538,7 +538,7 @@ class _Work:
         return max(self.request.k, len(self.found))
 
     def finish(self) -> Iterator[Event]:
-        """Fit the best that differ once more with the weights of the last steps, by the steps that are left."""
+        """Fit the best that differ once more, with the last weights, by the steps that are left."""
         chosen = self._near_first(worth_a_fit(self.found, self.ranking), MAY_COME_FIRST)[:FINISHED]
         left = self.request.polish - FIRST_ROUND - self._second_steps
         tasks = [PolishTask(candidate, left) for candidate in chosen]
