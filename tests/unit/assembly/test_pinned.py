@@ -295,6 +295,8 @@ def test_that_pieces_keep_clear_of_ears_but_for_a_share_and_printed_ones_by_all_
             others = np.flatnonzero((layer == piece.layer) & (np.arange(len(layer)) != number))
             least = min(least, float(shapely.distance(bodies[others][:, None], pins).min()))
     assert least > 0.5 * options.ear_mm + options.clearance_mm - options.rounded_mm - 1e-6
+
+
 @pytest.fixture(scope="module")
 def notched() -> tuple[PosedDesign, Outline]:
     """A square whose target has a notch."""
