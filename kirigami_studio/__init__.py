@@ -11,7 +11,7 @@ The names in ``__all__`` are the Python API, told in ``docs/python-api.md``; eac
 import importlib
 from difflib import get_close_matches
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _MODULES = {
     "api.target": ("Target", "load_target", "target_names"),

@@ -23,7 +23,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.events import Progress
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import sized
-from kirigami_studio.project.target_parts import parts_as_cut, scale_of, twins, with_part, with_parts
+from kirigami_studio.project.target_parts import parts_as_cut, scale_of, with_part, with_parts, with_twins
 from kirigami_studio.settings.fabrication import CutChange, StyleName, with_choices
 from kirigami_studio.studio.making import ExportedFiles, Output
 from kirigami_studio.studio.part_sheets import exporting_parts, part_names, with_settings
@@ -244,14 +244,10 @@ def design_parts(
     first = design(pieces[largest].outline, **choices).document
     whole = with_parts(Document(settings=first.settings, fabrication=first.fabrication), placed)
     whole = sized(with_part(whole, largest, replace(first, place=whole.place, fabrication=whole.fabrication)))
-    each = parts_as_cut(whole)
-    same = twins(each)
-    designed = {same[largest]: first}
-    for number, part in enumerate(each):
-        if number != largest and part.target is not None:
-            if same[number] not in designed:
-                choices["width_mm"] = part.fabrication.width_mm
-                designed[same[number]] = design(part.target, **choices).document
-            found = replace(designed[same[number]], target=part.target, place=part.place)
-            whole = with_part(whole, number, found)
+    whole = with_twins(whole, largest)
+    for number, part in enumerate(parts_as_cut(whole)):
+        if part.target is not None and not whole.parts[number].candidates:
+            choices["width_mm"] = part.fabrication.width_mm
+            found = replace(design(part.target, **choices).document, place=part.place)
+            whole = with_twins(with_part(whole, number, found), number)
     return Parts(whole)

@@ -7,12 +7,14 @@ it where their pins are: a void goes if its pins in the hole show more than what
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from kirigami_studio.assembly.motion import GeometryArray, discs, polygons
+from kirigami_studio.assembly.motion import GeometryArray, LayerMotion, discs, freedom, polygons
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.evaluate.boundary import as_plane
 from kirigami_studio.evaluate.kept_panels import PanelTable, all_panels
@@ -35,6 +37,8 @@ MOSTLY = 0.5
 LEAST_GAIN_MM2, ROUNDS = 1.0, 3
 #: A symmetric sheet keeps its symmetry where panels lie in holes by shares that differ by no more from their images'.
 ALIKE = 0.1
+#: Panels of which the target shows no more than this share are crumbs: links beside the outline that nobody wants.
+CRUMB = 0.2
 
 
 def panels_left(design: PosedDesign, shown: Polygon, cell_mm: float, options: PinOptions) -> PanelTable:
@@ -68,6 +72,50 @@ def pins_in_holes(deployment: Deployment, panels: PanelTable, phi: float, shown:
     deep = np.asarray(shapely.distance(places[inside], shown))
     found: list[int] = nodes[inside][np.argsort(-deep, kind="stable")].tolist()
     return found
+
+
+def without_crumbs(
+    deployment: Deployment, panels: PanelTable, phi: float, shown: Polygon, cell_mm: float, spare: float
+) -> PanelTable:
+    """Leave out panels that show next to nothing of the target, as long as the others keep their one motion.
+
+    All that would stay of them is walls round pins beside the outline, and necks between these.
+
+    Parameters
+    ----------
+    deployment : Deployment
+    panels : PanelTable
+    phi : float, radians
+        The target angle.
+    shown : Polygon
+        The target, frame of the deployment at ``phi``, mm.
+    cell_mm : float
+    spare : float, mm2
+        How much of the flat sheet may go.
+    """
+    flat, placed = (polygons(as_plane(deployment.nodes(at))[panels.corners] * cell_mm) for at in (math.pi, phi))
+    area = shapely.area(flat)
+    share = shapely.area(shapely.intersection(placed, Polygon(shown.exterior))) / area
+    stays = np.ones(len(area), dtype=np.bool_)
+    for index in np.argsort(share, kind="stable"):
+        if share[index] > CRUMB or area[index] > spare:
+            continue
+        stays[index] = False
+        if freedom(LayerMotion.of(deployment, cell_mm, phi, panels=_some(panels, stays))) == 1:
+            spare -= float(area[index])
+        else:
+            stays[index] = True
+    return panels if stays.all() else _some(panels, stays)
+
+
+def _some(panels: PanelTable, stays: BoolArray) -> PanelTable:
+    """Panels that stay, with the pins that both of their panels have."""
+    return panels.at(np.flatnonzero(stays), _in_pairs(panels, panels.hinged & stays[:, None]))
+
+
+def _in_pairs(panels: PanelTable, hinged: BoolArray) -> BoolArray:
+    """Those corners (P, 4) of some whose node another panel has among them, too."""
+    return hinged & (np.bincount(panels.corners.ravel(), hinged.ravel())[panels.corners] > 1.0)
 
 
 def kept_voids(panels: PanelTable, grid: tuple[int, int]) -> BoolArray:
@@ -118,8 +166,7 @@ def _left_by(trim: Trim, deployment: Deployment) -> PanelTable:
     """Panels of which a trim left something, and pins that both parts reach."""
     every = all_panels(*deployment.sheet.grid)
     reached = every.hinged & left_corners(trim.kept, deployment.compact[every.corners])
-    both = np.bincount(every.corners.ravel(), reached.ravel())[every.corners] > 1.0
-    hinged = reached & both
+    hinged = _in_pairs(every, reached)
     return every.at(np.flatnonzero(hinged.any(axis=1)), hinged)
 
 

@@ -10,13 +10,13 @@ import shapely
 from shapely import affinity
 from shapely.geometry import Polygon
 
-from kirigami_studio.assembly.cut_away import panels_left, pins_in_holes
-from kirigami_studio.assembly.motion import LayerMotion
+from kirigami_studio.assembly.cut_away import panels_left, pins_in_holes, without_crumbs
+from kirigami_studio.assembly.motion import LayerMotion, polygons
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
 from kirigami_studio.assembly.rim_pieces import EndState, extend_to, roomiest_place, round_off, trim_to
 from kirigami_studio.assembly.shaping import Shaping, less
-from kirigami_studio.evaluate.boundary import as_points
+from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import FloatArray
@@ -26,9 +26,9 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
 
-#: How much of what the flat outline can spare it may lose where pieces are cut, and how much of the rest they may stick
-#: out of it.
-MOST_LOST, MOST_BEYOND = 0.6, 0.9
+#: How much of what the flat outline can spare it may lose by crumbs, and where pieces are cut, and how much of the rest
+#: they may stick out of it.
+CRUMBS, MOST_LOST, MOST_BEYOND = 0.5, 0.6, 0.9
 #: Width of a character of a label, in its heights.
 CHARACTER = 0.7
 
@@ -106,19 +106,29 @@ def pinned(
     shown = shapely.transform(target.polygon, lambda points: pose.inverse().apply(points) * cell_mm)
     panels = panels_left(design, shown, cell_mm, options)
     flat = Polygon(_start_outline(deployment) * cell_mm).buffer(margin, join_style="mitre")
+    spare = (1.0 - options.least_flat) * flat.area
     # GEOS leaves such flags behind at sharp corners.
     with one_blas_thread(), np.errstate(divide="ignore", invalid="ignore"):
         unwanted = pins_in_holes(deployment, panels, phi, shown, cell_mm)
         needless = [] if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
-        shaping = Shaping.of(deployment, cell_mm, phi, options, panels, unwanted, needless)
+        fewer = panels
+        if not options.in_one_plane and options.weight >= 0.5:
+            fewer = without_crumbs(deployment, panels, phi, shown, cell_mm, CRUMBS * spare)
+        shaping = Shaping.of(deployment, cell_mm, phi, options, fewer, unwanted, needless)
+        if fewer is not panels and shaping.faults:
+            whole = Shaping.of(deployment, cell_mm, phi, options, panels, unwanted, needless)
+            shaping = min(shaping, whole, key=lambda one: one.faults)
+            fewer = fewer if shaping is not whole else panels
+        crumbs = panels.corners[~np.isin(panels.index, fewer.index)]
+        gone = float(np.sum(shapely.area(polygons(as_plane(deployment.nodes(math.pi))[crumbs] * cell_mm))))
+        panels = fewer
         if only_whole and shaping.broken:
             first = piece_names(shaping.motion)[min(shaping.broken)]
             raise FabricationError("pinned.falls_apart", piece=first, count=len(shaping.broken))
         opened = EndState.of(deployment, panels, phi, cell_mm, shown, options.reach_mm)
         closed = EndState.of(deployment, panels, math.pi, cell_mm, flat, options.reach_mm)
-        spare = (1.0 - options.least_flat) * flat.area
         # Of the flat outline of a cover there is no more than its trim leaves.
-        most = math.inf if design.trim is not None and design.trim.given_up else MOST_LOST * spare
+        most = math.inf if design.trim is not None and design.trim.given_up else MOST_LOST * (spare - gone)
         trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)
         trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
         extend_to(shaping, opened, closed, 0.0)

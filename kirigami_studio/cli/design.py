@@ -47,7 +47,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.labels import run_labels
 from kirigami_studio.project.sheet_size import sized
 from kirigami_studio.project.store import save
-from kirigami_studio.project.target_parts import parts_as_cut, scale_of, twins, with_part, with_parts
+from kirigami_studio.project.target_parts import for_twin, parts_as_cut, scale_of, twins, with_part, with_parts
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
@@ -217,7 +217,7 @@ class DesignOutcome:
         target, document = part.target, self.request.document
         assert target is not None and document is not None  # parts have one, and so has a design that was just made
         result = replace(self.result, request=replace(self.result.request, target=target))
-        own = CutRequest.of(replace(document, target=target, place=part.place))
+        own = CutRequest.of(for_twin(document, part))
         return replace(self, result=result, request=replace(own, as_cut=self.request.as_cut))
 
     def save(self, folder: Path) -> dict[str, str]:

@@ -314,7 +314,9 @@ def _between(before: Sheet, wanted: Sheet, share: float) -> Sheet:
         return wanted.with_field(field)
     rows, columns = before.grid
     start, end = before.rim.offsets(rows, columns), wanted.rim.offsets(rows, columns)
-    return replace_sheet(wanted.with_field(field), rim=Rim.moved(rows, columns, start + share * (end - start)))
+    return replace_sheet(
+        wanted.with_field(field), rim=Rim.moved(rows, columns, start + share * (end - start), wanted.rim.hinges)
+    )
 
 
 def log_ratio_for(gap: float, slit: float) -> float:

@@ -103,9 +103,7 @@ class PosedDesign:
 
     def outline(self, nodes: FloatArray, phi: float) -> FloatArray:
         """Boundary polygon (L, 2) out of :meth:`nodes`, before anything was cut off."""
-        tables = self.deployment.topology
-        zipped = phi < 1e-9
-        boundary: FloatArray = nodes[tables.outline_at_zero if zipped else tables.outline_nodes]
+        boundary: FloatArray = nodes[self.deployment.outline_loop(phi)]
         return boundary
 
     def silhouette(self, phi: float) -> list[FloatArray]:

@@ -417,6 +417,7 @@ def design_hash(deployment: Deployment, kept: Sequence[FloatArray | None]) -> st
     content = f"{ratio.shape}".encode() + np.ascontiguousarray(ratio, dtype="<f8").tobytes()
     if not sheet.is_default:
         others = [sheet.rim.positions, np.array(sheet.cell), np.zeros(0) if sheet.start is None else sheet.start]
+        others.append(sheet.rim.hinges)
         content += b"".join(np.ascontiguousarray(part, dtype="<f8").tobytes() for part in others)
     for index, part in enumerate(kept):
         if part is not None:

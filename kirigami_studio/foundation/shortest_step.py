@@ -26,8 +26,6 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 ROUNDS = 30
 #: Newton steps at most, of which some ten do, and the share of the whole step below which one changes nothing.
 NEWTON_STEPS, SETTLED = 100, 1e-12
-#: How often the way of a Newton step is halved that goes too far.
-HALVINGS = 30
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,15 +75,18 @@ class Conditions:
 
     def _by_newton(self) -> FloatArray:
         """Multipliers (C,) of the step with the least sum."""
-        step = np.zeros(self.rows.shape[1])
+        variables = self.rows.shape[1]
+        step, curvature = np.zeros(variables), np.eye(variables)
+        counted = np.zeros(self.asked.size, dtype=np.bool_)
         for _ in range(NEWTON_STEPS):
             lacking = self.asked - self.rows @ step
-            push = np.maximum(lacking, 0.0) / self.give
-            slope = step - self.rows.T @ push
             there = lacking > 0.0
-            weighted = self.rows[there] / self.give[there, None]
-            curvature = self.rows[there].T @ weighted
-            curvature[np.diag_indices_from(curvature)] += 1.0
+            # From step to step few conditions begin to push, or cease to.
+            for changed, sign in ((there & ~counted, 1.0), (counted & ~there, -1.0)):
+                rows = self.rows[changed]
+                curvature += rows.T @ (rows * (sign / self.give[changed, None]))
+            counted = there
+            slope = step - self.rows.T @ (np.maximum(lacking, 0.0) / self.give)
             way = -cho_solve(cho_factor(curvature, check_finite=False), slope, check_finite=False)
             moved = self._along(step, way, lacking) * way
             step = step + moved
@@ -95,20 +96,24 @@ class Conditions:
         return found
 
     def _along(self, step: FloatArray, way: FloatArray, lacking: FloatArray) -> float:
-        """How far to go, as a share of a way, for the least sum: its slope along the way grows."""
+        """How far to go, as a share of a way, for the least sum: its slope along the way grows, in straight pieces."""
         gains = self.rows @ way
-
-        def slope(share: float) -> float:
-            push = np.maximum(lacking - share * gains, 0.0) / self.give
-            return float(way @ step + share * (way @ way) - push @ gains)
-
-        if slope(1.0) <= 0.0:
+        stiff, pushing = gains / self.give, (lacking > 0.0) | ((lacking == 0.0) & (gains < 0.0))
+        # Where each condition ceases to push, or begins to.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            turns = lacking / gains
+        order = np.flatnonzero((turns > 0.0) & (turns < 1.0) & (pushing == (gains > 0.0)))
+        order = order[np.argsort(turns[order], kind="stable")]
+        sign = np.where(gains[order] > 0.0, -1.0, 1.0)
+        before = float(way @ step - stiff[pushing] @ lacking[pushing])
+        growth = float(way @ way + stiff[pushing] @ gains[pushing])
+        starts = before - np.cumsum(np.append(0.0, sign * stiff[order] * lacking[order]))
+        growths = growth + np.cumsum(np.append(0.0, sign * stiff[order] * gains[order]))
+        ends = np.append(turns[order], 1.0)
+        piece = int(np.argmax(starts + ends * growths >= 0.0))
+        if starts[piece] + ends[piece] * growths[piece] < 0.0:
             return 1.0
-        low, high = 0.0, 1.0
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if slope(middle) < 0.0 else (low, middle)
-        return high
+        return float(min(-starts[piece] / growths[piece], ends[piece]))
 
 
 def shortest_step(

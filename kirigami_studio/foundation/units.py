@@ -19,6 +19,27 @@ _BETWEEN = r"(?: (?:x|×|to|bis|and|und|instead of|statt|±) |, (?:y = )?)"
 _LENGTHS = re.compile(rf"((?:{_FIRST}{_BETWEEN})*\{{\w+(?::[^{{}}]*)?\}}\)?) mm(²?)(?![\w/³])")
 
 
+#: Lengths of cuts in sentences, which may be many metres.
+_LONG = re.compile(r"\{((?:\w+_)?length_mm|planned_mm|found_mm|open_mm)(?::\.(\d)f)?\} mm(?![\w/²³])")
+#: From here on (mm) a length is read in metres, as in the window.
+METRE = 1000.0
+
+
+def in_metres(text: str, values: Mapping[str, object]) -> tuple[str, dict[str, object]]:
+    """Return a sentence about lengths of cuts, and its values, with long ones in metres."""
+    shown = dict(values)
+
+    def length(found: re.Match[str]) -> str:
+        value = values.get(found[1])
+        if not isinstance(value, Real) or abs(float(value)) < METRE:
+            return found[0]
+        name = f"{found[1]}_metres"
+        shown[name] = float(value) / METRE
+        return f"{{{name}:.{min(int(found[2] or 1) + 2, 4)}f}} m"
+
+    return _LONG.sub(length, text), shown
+
+
 def in_inches(text: str, values: Mapping[str, object]) -> tuple[str, dict[str, object]]:
     """Return a sentence about mm, and its values, in inches.
 

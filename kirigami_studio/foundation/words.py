@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.foundation.units import INCH, MM_PER_INCH, in_inches
+from kirigami_studio.foundation.units import INCH, MM_PER_INCH, in_inches, in_metres
 
 DOMAIN = "kirigami_studio"
 #: A folder of catalogues that is looked into before the bundled one.
@@ -118,8 +118,7 @@ def tr_n(one: str, many: str, count: int, /, **values: object) -> str:
 
 def fill(text: str, values: Mapping[str, object]) -> str:
     """Put values into a sentence, lengths in the shown unit, plainly where formats do not fit."""
-    if ShownUnit.inches:
-        text, values = in_inches(text, values)
+    text, values = (in_inches if ShownUnit.inches else in_metres)(text, values)
     try:
         return _filled(text, values)
     except (ValueError, TypeError, RecursionError):

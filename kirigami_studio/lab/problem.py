@@ -16,13 +16,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
+from kirigami_studio import __version__
 from kirigami_studio.evaluate.score import Score, evaluate
 from kirigami_studio.evaluate.silhouette import rasterise
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
@@ -33,6 +34,7 @@ from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU, bootstra
 from kirigami_studio.lab.benchmark.generator_table import Generator as TableGenerator
 from kirigami_studio.lab.benchmark.generator_table import generator_named
 from kirigami_studio.lab.benchmark.solver_suite import METHODS, SolverRun, SolverSettings, best_found
+from kirigami_studio.lab.paper_evaluator import released_match
 from kirigami_studio.lab.training.dataset import FAMILIES as DATA_FAMILIES
 from kirigami_studio.lab.training.dataset import SPLITS, Split, generate_split
 from kirigami_studio.lab.training.drawn_shapes import drawn_shape
@@ -45,6 +47,8 @@ from kirigami_studio.outlines.read_image import outline_of_mask
 FAMILIES = ("structured", "released", "sobol", "drawn")
 #: Seeds of drawn shapes; the bundled models were trained on the first kind and watched on the second.
 DRAWN_SEEDS = {"train": 0, "validation": 20_001, "test": 40_001}
+#: Which entries of a row of a leaderboard tell its call.
+ROW_KEY = ("family", "generator", "grid", "seed", "targets")
 #: Ratios may lie this far, as a share, outside 0.1 .. 10: rounding of 10**z.
 SLACK = 1e-6
 
@@ -193,8 +197,9 @@ class Judgement:
     Attributes
     ----------
     targets : int
-    siou, iou_exact : float
-        Means over all targets; one without a valid field counts as 0.
+    siou, iou_exact, siou_released : float
+        Means over all targets; one without a valid field counts as 0.  The last is the match as the paper's released
+        code measures it, whose floor is higher: judge ``uniform`` beside it.
     siou_interval : (float, float)
         Bootstrap 95 % interval of the mean over targets.
     success : float
@@ -226,23 +231,29 @@ class Judgement:
     seconds: float
     scores: tuple[Score | None, ...]
     refused: dict[int, str]
+    siou_released: float
 
     @property
     def sentence(self) -> str:
         """The figures in one line."""
         low, high = self.siou_interval
         return (
-            f"sIoU {self.siou:.3f} ({low:.3f} - {high:.3f}), exact IoU {self.iou_exact:.3f}, success "
-            f"{self.success:.3f}, TV {self.tv:.2f}, CV of panel areas {self.area_cv:.2f}, "
-            f"{1e3 * self.seconds:.1f} ms each, {self.targets} targets"
+            f"sIoU {self.siou:.3f} ({low:.3f} - {high:.3f}), as released {self.siou_released:.3f}, exact IoU "
+            f"{self.iou_exact:.3f}, success {self.success:.3f}, TV {self.tv:.2f}, CV of panel areas "
+            f"{self.area_cv:.2f}, {1e3 * self.seconds:.1f} ms each, {self.targets} targets"
         )
+
+    @property
+    def figures(self) -> dict[str, object]:
+        """Plain values of all targets together."""
+        names = ("targets", "siou", "siou_released", "iou_exact", "success", "feasible", "tv", "area_cv")
+        more = {name: getattr(self, name) for name in (*names, "uniform_siou", "seconds")}
+        return {**more, "siou_interval": list(self.siou_interval)}
 
     def to_json(self) -> dict[str, object]:
         """Plain values; of each target its sIoU and exact IoU."""
-        names = ("targets", "siou", "iou_exact", "success", "feasible", "tv", "area_cv", "uniform_siou", "seconds")
         return {
-            **{name: getattr(self, name) for name in names},
-            "siou_interval": list(self.siou_interval),
+            **self.figures,
             "each": [None if one is None else {"siou": one.siou, "iou_exact": one.iou_exact} for one in self.scores],
             "refused": {str(number): reason for number, reason in self.refused.items()},
         }
@@ -277,17 +288,22 @@ def judge(generator: Generator, targets: Sequence[Outline], grid: tuple[int, int
         raise UsageError("problem.fields_missing", wanted=len(targets), got=len(fields))
     scores: list[Score | None] = []
     problems: dict[int, RatioError] = {}
+    released = 0.0
     for number, (field, target) in enumerate(zip(fields, targets, strict=True)):
         scores.append(None)
         if field is None:
             continue
         try:
-            scores[-1] = evaluate(deploy(_checked(field, grid)), target)
+            sheet = deploy(_checked(field, grid))
         except RatioError as problem:
             problems[number] = problem
+            continue
+        scores[-1] = evaluate(sheet, target)
+        released += released_match(sheet, target)
     if problems and not any(scores):
         raise next(iter(problems.values()))
-    return _judgement(scores, seconds, {number: str(problem) for number, problem in problems.items()})
+    refused = {number: str(problem) for number, problem in problems.items()}
+    return _judgement(scores, seconds, refused, released / len(targets))
 
 
 def _checked(ratios: npt.ArrayLike, grid: tuple[int, int] | None) -> RatioField:
@@ -304,7 +320,9 @@ def _checked(ratios: npt.ArrayLike, grid: tuple[int, int] | None) -> RatioField:
     return field
 
 
-def _judgement(scores: Sequence[Score | None], seconds: float, refused: dict[int, str]) -> Judgement:
+def _judgement(
+    scores: Sequence[Score | None], seconds: float, refused: dict[int, str], siou_released: float
+) -> Judgement:
     valid = [one for one in scores if one is not None]
     siou = np.array([0.0 if one is None else one.siou for one in scores])
     success = [one.feasible and one.siou >= SUCCESS_SIOU for one in valid]
@@ -321,7 +339,40 @@ def _judgement(scores: Sequence[Score | None], seconds: float, refused: dict[int
         seconds=seconds,
         scores=tuple(scores),
         refused=refused,
+        siou_released=siou_released,
     )
+
+
+def entered(
+    board: Mapping[str, object],
+    judgements: Mapping[tuple[str, str], Judgement],
+    grid: tuple[int, int],
+    seed: int,
+) -> dict[str, object]:
+    """A leaderboard with the judgements of one call; those of the same call before it are replaced.
+
+    Parameters
+    ----------
+    board : mapping
+        With ``rows``, as this function returned it; empty at first.
+    judgements : mapping of (family, generator) to Judgement
+    grid : (rows, columns)
+    seed : int
+
+    Raises
+    ------
+    UsageError
+        ``board`` is not a leaderboard.
+    """
+    before = board.get("rows", [])
+    if not isinstance(before, list) or not all(isinstance(row, dict) and set(ROW_KEY) <= set(row) for row in before):
+        raise UsageError("problem.not_a_leaderboard")
+    rows = {tuple(row[name] for name in ROW_KEY): row for row in before}
+    for (family, generator), judged in judgements.items():
+        row = {"family": family, "generator": generator, "grid": f"{grid[0]} x {grid[1]}", "seed": seed}
+        row |= judged.figures | {"version": __version__}
+        rows[tuple(row[name] for name in ROW_KEY)] = row
+    return {"rows": list(rows.values())}
 
 
 def _mean(values: Sequence[float]) -> float:

@@ -132,6 +132,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "problem.unknown_baseline": mark(
         "There is no baseline called '{name:.80}'. Choose one of {choices}, or name a .safetensors file."
     ),
+    "problem.not_a_leaderboard": mark("This .json file is not a leaderboard: it has no list of rows."),
     "problem.fields_missing": mark(
         "The generator gave {got} ratio fields for {wanted} targets. It has to give one for each, or None."
     ),

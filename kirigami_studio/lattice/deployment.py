@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import AngleError
 from kirigami_studio.lattice.compact import solve_compact
 from kirigami_studio.lattice.ratio_field import RatioField, frozen
@@ -100,9 +100,14 @@ class Deployment:
 
         L is 4 (m + n) + 4, or 2 (m + n) + 4 at phi = 0, where the edge hinges have zipped shut.
         """
+        return self.nodes(phi)[self.outline_loop(check_phi(phi))]
+
+    def outline_loop(self, phi: float) -> IntArray:
+        """The outline's nodes at ``phi``: (L,) int; more of them at 0 where edge hinges are not halfway."""
         tables = self.topology
-        zipped = check_phi(phi) < ZIPPED_BELOW
-        return self.nodes(phi)[tables.outline_at_zero if zipped else tables.outline_nodes]
+        if phi >= ZIPPED_BELOW:
+            return tables.outline_nodes
+        return tables.outline_at_zero if self.sheet.rim.folds_shut else tables.outline_half_zipped
 
     def area(self, phi: float) -> float:
         """Area inside the outline, ``(sheet area) + sum a b sin(phi)``, unit cells squared."""

@@ -4,7 +4,9 @@ Along each side, *mouths* and *edge hinges* alternate.  At a mouth a cut leaves 
 at the same place while the sheet is flat.  At an edge hinge two panels share the node.  The paper spaces both evenly.
 All that the second compact state needs is that each edge hinge sits halfway between its two neighbouring mouths (a
 corner counts as a mouth): its two rim edges then still fold onto each other.  That frees the mouths, and as every
-compact node is a fixed combination of the rim's, all nodes are linear in them.
+compact node is a fixed combination of the rim's, all nodes are linear in them.  A sheet that shows its target half open
+needs no second compact state: there edge hinges may sit anywhere between their mouths (``Rim.hinges``), as in the
+sheets of Choi, Dudte and Mahadevan (2019), whose notches are narrower for it.
 
 Nor does the flat sheet have to be a rectangle: with mouths and corners on any convex outline and edge hinges halfway
 along the chords between them, the barycentric system of ``compact`` divides that polygon into panels all the same.
@@ -36,6 +38,10 @@ SIDES: tuple[Side, ...] = ("top", "right", "bottom", "left")
 LEAST_GAP = 1e-3
 #: How far (unit cells) fits and samples move a mouth from its even place: rim edges stay longer than 0.3 cells.
 RIM_REACH = 0.7
+#: How far (share of the rim between two mouths) fits move an edge hinge from halfway: the same 1 : 10 as of ratios.
+HINGE_REACH = 0.4
+#: Edge hinges stay this far (share) from halfway at most: a rim edge needs length.
+FARTHEST_HINGE = 0.49
 #: Sides of a cell (unit cells): within these bounds tolerances in cells mean something.
 CELL_SIDES = (0.05, 20.0)
 
@@ -58,6 +64,17 @@ class RimTable:
     #: (G, A); each given node as a combination of the anchors: 1 at its own, one half at both neighbours of an edge
     #: hinge.
     share: FloatArray
+    hinges: IntArray  #: (E,); rows of ``share`` of the edge hinges, clockwise
+    between: IntArray  #: (E, 2); the anchors before and after each of them, clockwise
+
+    def shares(self, hinges: FloatArray) -> FloatArray:
+        """``share`` with edge hinges moved by ``hinges`` (E,) from halfway, or with none moved where that is empty."""
+        if not hinges.size:
+            return self.share
+        moved = self.share.copy()
+        moved[self.hinges, self.between[:, 0]] = 0.5 - hinges
+        moved[self.hinges, self.between[:, 1]] = 0.5 + hinges
+        return moved
 
 
 @cache
@@ -79,8 +96,10 @@ def rim_table(rows: int, columns: int) -> RimTable:
     share = np.zeros((node.size, anchor_place.size))
     at = np.searchsorted(anchor_place, place)
     share[~hinge, at[~hinge]] = 1.0
-    share[hinge, at[hinge] - 1] = 0.5
-    share[hinge, at[hinge] % anchor_place.size] = 0.5
+    hinges = np.flatnonzero(hinge)
+    hinges = hinges[np.argsort(place[hinges])]
+    between = np.stack([at[hinges] - 1, at[hinges] % anchor_place.size], axis=1)
+    share[hinges[:, None], between] = 0.5
     mouths, even, side = [], [], []
     for number, (first, length, along) in enumerate(
         zip(corners, (width, height, width, height), (1, 1, -1, -1), strict=True)
@@ -89,8 +108,10 @@ def rim_table(rows: int, columns: int) -> RimTable:
         mouths.append(inside)
         even.append(anchor_place[inside] - first if along > 0 else first + length - anchor_place[inside])
         side.append(np.full(inside.size, number))
-    table = RimTable(np.concatenate(mouths), np.concatenate(even), np.concatenate(side), anchor_place, node, share)
-    for values in (table.mouths, table.even, table.side, table.anchor_place, table.node, table.share):
+    table = RimTable(
+        np.concatenate(mouths), np.concatenate(even), np.concatenate(side), anchor_place, node, share, hinges, between
+    )
+    for values in (table.mouths, table.even, table.side, table.anchor_place, table.node, table.share, hinges, between):
         values.setflags(write=False)
     return table
 
@@ -105,7 +126,7 @@ def _edge_hinges(rows: int, columns: int) -> IntArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rim:
-    """Where the cuts meet the rim: positions of the mouths along each side."""
+    """Where the cuts meet the rim: positions of the mouths along each side, and edge hinges that are off halfway."""
 
     #: top, bottom: (k,), unit cells; from left to right, inside 0 .. n + 1.
     top: FloatArray
@@ -113,16 +134,23 @@ class Rim:
     right: FloatArray
     bottom: FloatArray
     left: FloatArray
+    #: (E,); how far each edge hinge is from halfway between its mouths, as a share of the rim between these, clockwise
+    #: from the top left corner; empty where all are halfway, which the second compact state needs.
+    hinges: FloatArray = attribute(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
-        for name, given in zip(SIDES, self.sides, strict=True):
+        for name, given in zip((*SIDES, "hinges"), (*self.sides, self.hinges), strict=True):
             try:
                 values = _numbers(given)
             except (TypeError, ValueError, OverflowError):
                 values = frozen([np.nan])
             if values.ndim != 1 or not np.all(np.isfinite(values)):
+                if name == "hinges":
+                    raise SheetError("rim.hinges_not_numbers")
                 raise SheetError("rim.not_numbers", side=name)
             object.__setattr__(self, name, values)
+        if not self.hinges.any():
+            object.__setattr__(self, "hinges", frozen(np.zeros(0)))
 
     @classmethod
     def even(cls, rows: int, columns: int) -> Rim:
@@ -130,12 +158,27 @@ class Rim:
         return cls.moved(rows, columns, np.zeros(rim_table(rows, columns).even.size))
 
     @classmethod
-    def moved(cls, rows: int, columns: int, offsets: FloatArray) -> Rim:
-        """Mouths moved along their sides by ``offsets`` (R,), unit cells, as in :class:`RimTable`."""
+    def moved(cls, rows: int, columns: int, offsets: FloatArray, hinges: FloatArray | None = None) -> Rim:
+        """Mouths moved along their sides by ``offsets`` (R,), unit cells, and edge hinges by shares (E,), as in
+        :class:`RimTable`.
+        """
         table = rim_table(rows, columns)
         positions = table.even + offsets
         top, right, bottom, left = (positions[table.side == number] for number in range(4))
-        return cls(top, right, bottom, left)
+        return cls(top, right, bottom, left, np.zeros(0) if hinges is None else hinges)
+
+    @property
+    def folds_shut(self) -> bool:
+        """Whether all edge hinges are halfway, so that the second compact state is whole."""
+        return not self.hinges.size
+
+    def folding_shut(self) -> Rim:
+        """The same mouths with all edge hinges halfway."""
+        return self if self.folds_shut else Rim(*self.sides)
+
+    def hinge_offsets(self, rows: int, columns: int) -> FloatArray:
+        """How far each edge hinge is from halfway: (E,) float, share of the rim between its mouths."""
+        return self.hinges if self.hinges.size else np.zeros(rim_table(rows, columns).hinges.size)
 
     @property
     def sides(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -157,9 +200,16 @@ class Rim:
         Raises
         ------
         SheetError
-            A side has another number of mouths, or mouths that are not in order between its corners.
+            A side has another number of mouths, or mouths that are not in order between its corners; or edge hinges of
+            another number, or too near to a mouth.
         """
         table = rim_table(rows, columns)
+        if self.hinges.size not in (0, table.hinges.size):
+            raise SheetError(
+                "rim.wrong_hinges", wanted=table.hinges.size, got=self.hinges.size, rows=rows, columns=columns
+            )
+        if np.abs(self.hinges).max(initial=0.0) > FARTHEST_HINGE:
+            raise SheetError("rim.hinge_too_far", farthest=FARTHEST_HINGE)
         for number, (name, values) in enumerate(zip(SIDES, self.sides, strict=True)):
             wanted = int(np.count_nonzero(table.side == number))
             if values.size != wanted:
@@ -172,14 +222,15 @@ class Rim:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Rim) and all(
-            np.array_equal(mine, yours) for mine, yours in zip(self.sides, other.sides, strict=True)
+            np.array_equal(mine, yours)
+            for mine, yours in zip((*self.sides, self.hinges), (*other.sides, other.hinges), strict=True)
         )
 
     def __hash__(self) -> int:
-        return hash(self.positions.tobytes())
+        return hash(self.positions.tobytes() + self.hinges.tobytes())
 
     def __reduce__(self) -> tuple[type[Rim], tuple[FloatArray, ...]]:
-        return Rim, self.sides
+        return Rim, (*self.sides, self.hinges)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -280,7 +331,7 @@ def replace_sheet(sheet: Sheet, field: RatioField | None = None, rim: Rim | None
 
 def rim_nodes(sheet: Sheet) -> FloatArray:
     """The given nodes (G, 2), unit cells, in the order of ``rim_table(...).node``."""
-    return np.asarray(rim_table(*sheet.grid).share @ anchor_points(sheet))
+    return np.asarray(rim_table(*sheet.grid).shares(sheet.rim.hinges) @ anchor_points(sheet))
 
 
 def anchor_points(sheet: Sheet) -> FloatArray:
@@ -406,7 +457,7 @@ def _checked_cell(cell: tuple[float, float]) -> tuple[float, float]:
 
 
 def resized_sheet(sheet: Sheet, rows: int, columns: int) -> Sheet:
-    """The sheet carried to another grid: ratios by parity, the rim's offsets along sides."""
+    """The sheet carried to another grid: ratios by parity, the rim's offsets along sides, edge hinges halfway."""
     check_grid(rows, columns)
     if sheet.grid == (rows, columns):
         return sheet

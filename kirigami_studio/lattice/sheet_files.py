@@ -2,8 +2,9 @@
 
 ``{"ratio": [[...], ...], "rim": {"top": [...], "right": [...], "bottom": [...], "left": [...]}, "start": [[x, y], ...],
 "cell": [width, height]}``.  Row 0 of the ratios is on top; the rim has the positions of the mouths in unit cells along
-each side, left to right and top to bottom.  Only ``ratio`` is required: what is missing or null is the paper's.  A bare
-table of ratios, as JSON or .npy, is a sheet too.
+each side, left to right and top to bottom; ``hinges``, where edge hinges are not halfway between their mouths, has the
+shares by which each of them is off, clockwise.  Only ``ratio`` is required: what is missing or null is the paper's.  A
+bare table of ratios, as JSON or .npy, is a sheet too.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ from kirigami_studio.lattice.sheet import SIDES, Rim, Sheet
 
 #: What :func:`read_sheet` reads.
 SUFFIXES = (".json", ".npy")
+#: Entry of the rim beside its sides.
+HINGES = "hinges"
 LARGEST_FILE = 64 * 1024 * 1024
 
 
@@ -36,7 +39,8 @@ def sheet_json(sheet: Sheet) -> dict[str, object]:
 def rim_json(sheet: Sheet) -> dict[str, object]:
     """The entries beside the ratios: ``rim``, ``start`` and ``cell``."""
     return {
-        "rim": {side: values.tolist() for side, values in zip(SIDES, sheet.rim.sides, strict=True)},
+        "rim": {side: values.tolist() for side, values in zip(SIDES, sheet.rim.sides, strict=True)}
+        | ({} if sheet.rim.folds_shut else {HINGES: sheet.rim.hinges.tolist()}),
         "start": None if sheet.start is None else sheet.start.tolist(),
         "cell": list(sheet.cell),
     }
@@ -69,10 +73,10 @@ def _rim(entry: object, field: RatioField) -> Rim:
     even = Rim.even(field.rows, field.columns)
     if entry is None:
         return even
-    if not isinstance(entry, dict) or not set(entry) <= set(SIDES):
+    if not isinstance(entry, dict) or not set(entry) <= {*SIDES, HINGES}:
         raise SheetError("rim.not_four_sides")
     top, right, bottom, left = (entry.get(side, values) for side, values in zip(SIDES, even.sides, strict=True))
-    return Rim(top, right, bottom, left)
+    return Rim(top, right, bottom, left, entry.get(HINGES, even.hinges))
 
 
 def read_sheet(path: Path) -> Sheet:

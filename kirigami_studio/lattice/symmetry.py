@@ -10,7 +10,7 @@ With z = log10 x, row i from the top and column j from the left, the lattice has
 
 A flip changes the sense in which panels turn, which an odd number of columns (rows) makes good: even and odd panels
 change places.  Mouths go where the flip or turn takes them; their offset along the side changes its sign where their
-direction along the side is reversed.
+direction along the side is reversed.  So do edge hinges, whose direction, clockwise, is reversed by flips.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from scipy.sparse import csc_matrix
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import UsageError
-from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points, rim_table
+from kirigami_studio.lattice.sheet import RimPath, Sheet, anchor_points, rim_nodes, rim_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,13 +118,13 @@ class Symmetry(Enum):
 
 @dataclass(frozen=True, eq=False)
 class GridSymmetry:
-    """Signed permutations of one grid's numbers: m n entries of z, then R offsets of mouths."""
+    """Signed permutations of one grid's numbers: m n entries of z, R offsets of mouths, E of edge hinges."""
 
     symmetry: Symmetry
     rows: int
     columns: int
-    source: IntArray  #: (G, m * n + R); for each move, where the image's entries come from
-    sign: FloatArray  #: (G, m * n + R); what they are multiplied with
+    source: IntArray  #: (G, m * n + R + E); for each move, where the image's entries come from
+    sign: FloatArray  #: (G, m * n + R + E); what they are multiplied with
 
     def symmetric(self, z: FloatArray) -> FloatArray:
         """The nearest fields (..., m, n) that equal all their images."""
@@ -133,19 +133,20 @@ class GridSymmetry:
     def symmetric_offsets(self, offsets: FloatArray) -> FloatArray:
         """The nearest rim offsets (..., R), unit cells, that equal all their images."""
         cells = self.rows * self.columns
+        mouths = slice(cells, cells + offsets.shape[-1])
         total = offsets.copy()
-        for source, sign in zip(self.source[:, cells:] - cells, self.sign[:, cells:], strict=True):
+        for source, sign in zip(self.source[:, mouths] - cells, self.sign[:, mouths], strict=True):
             total += sign * offsets[..., source]
         mean: FloatArray = total / (1 + len(self.source))
         return mean
 
     @cached_property
     def basis(self) -> csc_matrix:
-        """All symmetric states: (m * n + R, reduced).
+        """All symmetric states: (m * n + R + E, reduced).
 
-        A state (z row by row, then the offsets) is symmetric exactly when it is ``basis @ y``.  Columns are orthogonal
-        with entries 1, -1 and 0: each entry of y is the value at the first place of its orbit, so bounds on y are
-        bounds on all values.
+        A state (z row by row, then the offsets of mouths and edge hinges) is symmetric exactly when it is
+        ``basis @ y``.  Columns are orthogonal with entries 1, -1 and 0: each entry of y is the value at the first place
+        of its orbit, so bounds on y are bounds on all values.
         """
         count = self.source.shape[1]
         own = np.arange(count)
@@ -187,7 +188,7 @@ def has_symmetry(sheet: Sheet, symmetry: Symmetry, off: float = SAME) -> bool:
     """Whether a sheet with its rim and start has a symmetry; ratios may be ``off`` (log10)."""
     if not symmetry.fits(*sheet.grid):
         return False
-    z, points = sheet.field.log10, anchor_points(sheet)
+    z, points = sheet.field.log10, anchor_points(sheet) if sheet.rim.folds_shut else rim_nodes(sheet)
     points = points - 0.5 * (points.min(axis=0) + points.max(axis=0))
     return all(np.abs(image - z).max() < off for image in symmetry.images(z)) and all(
         _same_points(points @ move.matrix, points) for move in symmetry.moves
@@ -205,18 +206,24 @@ def _on(symmetry: Symmetry, rows: int, columns: int) -> GridSymmetry:
     number = np.arange(rows * columns).reshape(rows, columns)
     path, table = RimPath(rows, columns), rim_table(rows, columns)
     middle = np.array([columns + 1, -rows - 1]) / 2
-    place = path.anchors(table.even)[table.mouths] - middle
+    anchors = path.anchors(table.even)
+    place, hinge_place = anchors[table.mouths] - middle, anchors[table.between].mean(axis=1) - middle
     along = path.slopes(table.even)
     source, sign = [], []
     for move in symmetry.moves:
         field = np.rot90(np.fliplr(number) if move.flipped else number, move.turns).ravel()
-        # The mouth that comes to each mouth's place.
-        distance = np.abs((place @ move.matrix)[None] - place[:, None]).sum(axis=2)
-        mouth = distance.argmin(axis=1)
-        source.append(np.concatenate([field, number.size + mouth]))
+        mouth, hinge = _taken_to(place, move), _taken_to(hinge_place, move)
+        source.append(np.concatenate([field, number.size + mouth, number.size + mouth.size + hinge]))
         turned = np.einsum("rd,rd->r", (along @ move.matrix)[mouth], along)
-        sign.append(np.concatenate([np.full(number.size, move.sign), turned]))
+        reversed_ = np.full(hinge.size, -1.0 if move.flipped else 1.0)
+        sign.append(np.concatenate([np.full(number.size, move.sign), turned, reversed_]))
     tables = GridSymmetry(symmetry, rows, columns, np.array(source), np.array(sign))
     tables.source.setflags(write=False)
     tables.sign.setflags(write=False)
     return tables
+
+
+def _taken_to(place: FloatArray, move: Move) -> IntArray:
+    """Which of some places (K, 2) a move takes to each of them: (K,)."""
+    found: IntArray = np.abs((place @ move.matrix)[None] - place[:, None]).sum(axis=2).argmin(axis=1)
+    return found

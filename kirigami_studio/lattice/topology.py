@@ -35,6 +35,9 @@ class Topology:
     #: (2 (m + n) + 4,) int; the same at phi = 0, where the two unit edges at each edge hinge have zipped shut: hinge
     #: and one twin left out.
     outline_at_zero: IntArray
+    #: (3 (m + n) + 4,) int; the same where edge hinges are not halfway between their mouths: both twins stay, since
+    #: what is longer of two folded edges is a part of the boundary.
+    outline_half_zipped: IntArray
     #: (N, 2), unit cells; compact node positions for all ratios 1; exact for the nodes in ``fixed``.
     uniform_nodes: FloatArray
     fixed: BoolArray  #: (N,); nodes that lie on the sheet's edge in the compact state (the boundary anchors B)
@@ -71,12 +74,14 @@ def topology(rows: int, columns: int) -> Topology:
         panel_nodes=np.stack([h[:-1], v[:, :-1], h[1:], v[:, 1:]], axis=-1),
         outline_nodes=outline,
         outline_at_zero=outline[~(zipped & on_edge[outline]) & ~np.roll(zipped & on_edge[outline], 1)],
+        outline_half_zipped=outline[~(zipped & on_edge[outline])],
         uniform_nodes=uniform,
         fixed=on_edge,
         even_void=np.add.outer(np.arange(m), np.arange(n)) % 2 == 0,
     )
     for table in (tables.h, tables.v, tables.void_nodes, tables.panel_nodes, tables.outline_nodes,
-                  tables.outline_at_zero, tables.uniform_nodes, tables.fixed, tables.even_void):  # fmt: skip
+                  tables.outline_at_zero, tables.outline_half_zipped, tables.uniform_nodes, tables.fixed,
+                  tables.even_void):  # fmt: skip
         table.setflags(write=False)
     return tables
 

@@ -129,46 +129,69 @@ def reach_texts(reach: Reach, outline: Outline, scale_mm: float | None = None) -
             tr("The marked notch turns back too far."),
         )
     finer = _finer_grid(outline, reach.grid)
-    advice = (
-        tr("Make them wider.")
-        if finer is None
-        else tr("Try {rows} \N{MULTIPLICATION SIGN} {columns}.", rows=finer[0], columns=finer[1])
-    )
-    lost, brief = _lost(reach)
-    if scale_mm is not None:
-        width = scale_mm * reach.narrowest
-        return " ".join((lost, tr("It shows nothing under {width:.2g} mm.", width=width), advice)), f"{brief} {advice}"
-    return f"{lost} {advice}", f"{brief} {advice}"
+    lost, brief = _lost(reach, None if scale_mm is None else scale_mm * reach.narrowest)
+    if finer is None:
+        return f"{lost} {tr('Draw them wider.')}", f"{brief} {tr('Draw them wider.')}"
+    rows, columns = finer
+    whole = tr("Draw them wider, or try {rows} \N{MULTIPLICATION SIGN} {columns} voids.", rows=rows, columns=columns)
+    short = tr("Try {rows} \N{MULTIPLICATION SIGN} {columns}.", rows=rows, columns=columns)
+    return f"{lost} {whole}", f"{brief} {short}"
 
 
-def _lost(reach: Reach) -> tuple[str, str]:
-    """What a sheet of the grid may lose, and the same in short."""
+def _lost(reach: Reach, narrowest_mm: float | None) -> tuple[str, str]:
+    """Fate of the marked parts on a sheet of the grid, and the same in short."""
     arms, notches = len(reach.arms), len(reach.notches)
-    rows, columns = reach.grid
+    grid = "{} \N{MULTIPLICATION SIGN} {}".format(*reach.grid)
+    width, known = narrowest_mm or 0.0, narrowest_mm is not None
     if arms and notches:
+        brief = tr("Thin arms will be blunt, narrow notches filled.")
+        if known:
+            return tr(
+                "Marked: {arms} thin arms and {notches} narrow notches, under {width:.2g} mm. A sheet of {grid} voids "
+                "makes the arms blunt and fills the notches.",
+                arms=arms,
+                notches=notches,
+                width=width,
+                grid=grid,
+            ), brief
         return tr(
-            "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose thin arms ({arms}) and narrow notches "
-            "({notches}).",
-            rows=rows,
-            columns=columns,
+            "Marked: {arms} thin arms and {notches} narrow notches. A sheet of {grid} voids makes the arms "
+            "blunt and fills the notches.",
             arms=arms,
             notches=notches,
-        ), tr("May lose thin arms and narrow notches.")
+            grid=grid,
+        ), brief
     if arms:
+        brief = tr_n("{count} thin arm will be blunt.", "{count} thin arms will be blunt.", arms)
+        if known:
+            return tr_n(
+                "The marked arm is thinner than {width:.2g} mm: a sheet of {grid} voids makes it blunt.",
+                "The {count} marked arms are thinner than {width:.2g} mm: a sheet of {grid} voids makes them blunt.",
+                arms,
+                width=width,
+                grid=grid,
+            ), brief
         return tr_n(
-            "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose {count} thin arm.",
-            "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose {count} thin arms.",
+            "The marked arm is thin: a sheet of {grid} voids makes it blunt.",
+            "The {count} marked arms are thin: a sheet of {grid} voids makes them blunt.",
             arms,
-            rows=rows,
-            columns=columns,
-        ), tr_n("May lose {count} arm.", "May lose {count} arms.", arms)
+            grid=grid,
+        ), brief
+    brief = tr_n("{count} narrow notch will be filled.", "{count} narrow notches will be filled.", notches)
+    if known:
+        return tr_n(
+            "The marked notch is narrower than {width:.2g} mm: a sheet of {grid} voids fills it.",
+            "The {count} marked notches are narrower than {width:.2g} mm: a sheet of {grid} voids fills them.",
+            notches,
+            width=width,
+            grid=grid,
+        ), brief
     return tr_n(
-        "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose {count} narrow notch.",
-        "A sheet of {rows} \N{MULTIPLICATION SIGN} {columns} voids may lose {count} narrow notches.",
+        "The marked notch is narrow: a sheet of {grid} voids fills it.",
+        "The {count} marked notches are narrow: a sheet of {grid} voids fills them.",
         notches,
-        rows=rows,
-        columns=columns,
-    ), tr_n("May lose {count} notch.", "May lose {count} notches.", notches)
+        grid=grid,
+    ), brief
 
 
 def _finer_grid(outline: Outline, grid: tuple[int, int]) -> tuple[int, int] | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -171,6 +172,7 @@ def image_parts(path: str | Path, threshold: float | None = None, in_colour: boo
             specks += dust
         if not found:
             raise TargetError("trace.specks", specks=specks)
+        found += _holes_in(found, LEAST_SHARE * levels.size[0] * levels.size[1])
         parts, too_many = numbered(found, float(max(levels.size)))
         notes = (*levels.notes, *too_many)
         if specks:
@@ -202,6 +204,14 @@ def _regions(ink: FloatArray, reduction: int, layer: str, colour: str) -> tuple[
         like = Part(0, "", layer, colour, DrawnPartKind.FILLED, Polygon())
         parts += parts_of_region(region, like)
     return parts, count - len(order)
+
+
+def _holes_in(parts: Sequence[Part], least: float) -> list[Part]:
+    """Holes of shapes as parts, such as a white star on a red disc."""
+    holes = [Polygon(ring) for part in parts if not part.is_aside for one in shapely.get_parts(part.region)
+             for ring in one.interiors]  # fmt: skip
+    holes = sorted((hole for hole in holes if hole.area >= least), key=lambda hole: hole.area, reverse=True)
+    return [Part(0, "", "", "", DrawnPartKind.FILLED, hole, is_aside=True) for hole in holes[:MOST_REGIONS]]
 
 
 def in_pixels(piece: Polygon, shift: tuple[float, float], reduction: int) -> BaseGeometry:

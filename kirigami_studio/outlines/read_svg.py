@@ -40,6 +40,8 @@ WIDEST_GAP = 0.02
 FAINT = 0.3
 #: A white rectangle is paper if it covers this share of the page.
 PAPER = 0.9
+#: Share of a coloured page from which on what is painted on it is meant, and not the page.
+ON_GROUND = 0.02
 #: How many times nearer to its curves than those of an outline the lines of a picture stay: 3 um of 200 mm.
 FINER = 16.0
 
@@ -133,6 +135,9 @@ def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget)
     notes = [*read.left_out]
     if paper is not None:
         notes.append(tr("The white background was left out."))
+    ground = _ground(drawn, read.page)
+    if ground is not None:
+        notes.append(tr("The coloured background was left out."))
     if any(shape.fill is not None and _is_open(shape) for shape in drawn):
         notes.append(tr("An open filled path was closed by a straight line, as it is painted."))
     written, fonts = text_parts(read.texts)
@@ -146,7 +151,7 @@ def parts_of_drawing(name: str, read: SvgDrawing, unit: str, budget: TimeBudget)
     for shape in drawn:
         budget.check()
         if shape.fill is not None:
-            parts += _filled_parts(shape)
+            parts += [replace(one, is_aside=shape is ground) for one in _filled_parts(shape)]
         elif shape.clip is not None:
             like = _part(shape, shape.stroke)
             parts += parts_of_region(shape.seen(), replace(like, lines=(), ring=None))
@@ -226,21 +231,40 @@ def _without_paper(
     drawn: tuple[Drawn, ...], size: tuple[float, float] | None
 ) -> tuple[list[Drawn], tuple[float, float, float, float] | None]:
     """Leave out a white rectangle that covers the page behind all others; and its box."""
-    first = next((shape for shape in drawn if shape.fill is not None), None)
-    others = [shape for shape in drawn if shape is not first]
-    if first is None or first.fill is None or min(first.fill[:3]) < WHITE or first.stroke is not None:
+    page = _page_of(drawn, size)
+    others = [shape for shape in drawn if shape is not page]
+    if page is None or page.fill is None or min(page.fill[:3]) < WHITE:
         return list(drawn), None
     if not any(shape.fill is None or min(shape.fill[:3]) < WHITE for shape in others):
         return list(drawn), None
+    points = np.concatenate(page.chains)
+    (left, top), (right, bottom) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return others, (left, top, right, bottom)
+
+
+def _ground(drawn: Sequence[Drawn], size: tuple[float, float] | None) -> Drawn | None:
+    """A coloured page with shapes of other colours on it, which are meant then, as in a picture."""
+    page = None if size is None else _page_of(drawn, size)
+    if page is None or page.fill is None:
+        return None
+    others = [shape for shape in drawn if shape is not page and shape.fill is not None and shape.fill != page.fill]
+    shown = sum(float(shape.region().area) for shape in others)
+    return page if shown >= ON_GROUND * float(page.region().area) else None
+
+
+def _page_of(drawn: Sequence[Drawn], size: tuple[float, float] | None) -> Drawn | None:
+    """The first filled shape where it is a plain rectangle that covers the page."""
+    first = next((shape for shape in drawn if shape.fill is not None), None)
+    if first is None or first.stroke is not None:
+        return None
+    others = [shape for shape in drawn if shape is not first]
     page = np.concatenate(first.chains)
     low, high = page.min(axis=0), page.max(axis=0)
     inner = np.concatenate([chain for shape in others if shape.fill is not None for chain in shape.chains] or [page])
     slack = 1e-6 * (high - low)
-    is_paper = first.region().area >= RECTANGLE * float(np.prod(high - low))
     covered = np.maximum(np.minimum(high, size or high) - np.maximum(low, 0.0), 0.0)
     if size is not None and np.prod(covered) < PAPER * np.prod(size):
-        return list(drawn), None
-    if is_paper and np.all(inner.min(axis=0) >= low - slack) and np.all(inner.max(axis=0) <= high + slack):
-        (left, top), (right, bottom) = low.tolist(), high.tolist()
-        return others, (left, top, right, bottom)
-    return list(drawn), None
+        return None
+    is_page = first.region().area >= RECTANGLE * float(np.prod(high - low))
+    within = np.all(inner.min(axis=0) >= low - slack) and np.all(inner.max(axis=0) <= high + slack)
+    return first if is_page and within else None

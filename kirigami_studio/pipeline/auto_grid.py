@@ -19,7 +19,6 @@ from typing import TypeVar
 import numpy as np
 import shapely
 
-from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.sentences import sentence
 from kirigami_studio.lattice.laying import start_error
@@ -29,10 +28,9 @@ from kirigami_studio.outlines.proportions import Proportions
 from kirigami_studio.outlines.reach import share_of_arms
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.symmetry import TOLERANCE
-from kirigami_studio.pipeline.rank import EVENNESS
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import TrialTask
-from kirigami_studio.polish.continuation import first_angles
+from kirigami_studio.polish.continuation import first_angles, sparingly
 from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries, symmetric_poses
@@ -69,7 +67,7 @@ FINER_LIMIT, FINER_PANELS = 24, 312
 TRIED_POSES = 2
 #: The same of pinned sheets that may be upright, and how many of their grids are tried.
 UPRIGHT_POSES, UPRIGHT_TRIED = 6, 3
-TRIAL = (FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
+TRIAL = sparingly(FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
 #: Proportions of sheets (logarithm of height over width) lie between the square and the shape's own, give or take this.
@@ -284,13 +282,13 @@ def predicted_for(request: Request) -> GridChoice:
     )
 
 
-#: Whoever carries out the short fits that decide between grids: what each of them made, in their order.
-Trials = Callable[[Request, Sequence[TrialTask]], list[Candidate]]
+#: Whoever carries out the short fits that decide between grids: the worth of each, in their order.
+Trials = Callable[[Request, Sequence[TrialTask]], list[float]]
 
 
-def one_by_one(request: Request, tasks: Sequence[TrialTask]) -> list[Candidate]:
+def one_by_one(request: Request, tasks: Sequence[TrialTask]) -> list[float]:
     """Carry out trials in this process."""
-    return [found for task in tasks if (found := task.carry_out(request, lambda: False).candidate) is not None]
+    return [task.carry_out(request, lambda: False).worth for task in tasks]
 
 
 def chosen_for(request: Request, trials: Trials = one_by_one) -> GridChoice:
@@ -413,8 +411,7 @@ def _worth(request: Request, grids: Sequence[_Candidate], trials: Trials) -> dic
             tasks.append(TrialTask(one.grid, angle, kept, TRIAL))
             owners.append(one)
     worth: dict[_Candidate, float] = {}
-    for owner, found in zip(owners, trials(request, tasks), strict=True):
-        reached = found.score.iou_exact - EVENNESS * found.score.evenness.area_cv
+    for owner, reached in zip(owners, trials(request, tasks), strict=True):
         worth[owner] = max(reached, worth.get(owner, reached))
     return worth
 

@@ -16,7 +16,6 @@ from kirigami_studio.foundation.sentences import sentence
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape, start_shape
 from kirigami_studio.outlines.turning import sides_needed
 from kirigami_studio.pipeline.auto_grid import TRIAL, Trials, one_by_one, predicted_for, remembered
-from kirigami_studio.pipeline.rank import EVENNESS
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import TrialTask
 from kirigami_studio.polish.continuation import first_angles
@@ -89,5 +88,4 @@ def _worth(request: Request, trials: Trials) -> float:
     # Poses without a symmetry are tried too: symmetric ones come first.
     free = [pose for pose in poses if pose[1] is None]
     tasks = [TrialTask(grid, *pose, TRIAL) for pose in dict.fromkeys([*poses[: POSES - 1], *free[:POSES]])]
-    found = trials(replace(request, grid=grid), tasks)
-    return max((one.score.iou_exact - EVENNESS * one.score.evenness.area_cv for one in found), default=0.0)
+    return max(trials(replace(request, grid=grid), tasks), default=0.0)

@@ -85,12 +85,13 @@ def best_as_cut(
     }
     losses: dict[Candidate, float] = {}
     hopeful = [one for one in known.candidates if known.ranking.cuttable(one) and one not in refusals]
-    for number in range(min(len(hopeful), MOST_LOOKED_AT)):
+    most = min(len(hopeful), MOST_LOOKED_AT)
+    for number in range(most):
         left = [one for one in hopeful if one not in refusals]
         first = _next(left, result.ranked_as_cut(jams, refusals, losses).ranking, losses)
         if first is None:
             break
-        yield Looking(number + 1, len(hopeful))
+        yield Looking(number + 1, most)
         found = yield from look(first)
         if found.refusal is not None:
             refusals[first] = found.refusal

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from types import MappingProxyType
 
 from kirigami_studio.evaluate.candidate import Candidate
@@ -23,13 +24,29 @@ class Started:
     total: int
 
 
+class Phase(Enum):
+    """A part of a run; the parts come in this order, samples among the first fits."""
+
+    LOADING = "loading"
+    SAMPLING = "sampling"
+    FITTING = "fitting"
+    POLISHING = "polishing"
+    SEARCHING = "searching"
+    FINISHING = "finishing"
+    COVERING = "covering"
+    TRIMMING = "trimming"
+    JUDGING = "judging"
+
+
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """``done`` of ``total`` units are done; ``message`` is fit for a status line."""
+    """``done`` of ``total`` units of a phase are done; ``message`` is fit for a status line."""
 
     done: int
     total: int
     message: str
+    phase: Phase = Phase.LOADING
+    share: float = 0.0  #: of the whole run, 0 to 1; it never falls
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +77,10 @@ class Result:
         Number of decoded designs, the paper's #F: for each sample one to score it and those that the generator looked
         at while it sampled, and those that polishing and search tried.
     seconds : float
-        Wall time of the run; the only part that differs between two equal requests without a budget.
+        Wall time of the run until all designs are there.
+    judging_seconds : float
+        Wall time after that, in which designs were judged as cut, and others made for what was found.  The two times
+        are all that differs between two equal requests without a budget.
     budget_ended : bool
         The time budget was used up before all was done: candidates may be unpolished or, of very many, missing.
     repeats : int
@@ -81,6 +101,7 @@ class Result:
     seconds: float
     budget_ended: bool = False
     repeats: int = 0
+    judging_seconds: float = field(default=0.0, compare=False)
     jam_phi: Mapping[Candidate, float] = field(default_factory=dict, hash=False)
     refusals: Mapping[Candidate, Note] = field(default_factory=dict, hash=False)
     losses: Mapping[Candidate, float] = field(default_factory=dict, hash=False)

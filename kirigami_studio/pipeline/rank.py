@@ -195,10 +195,10 @@ class Ranking:
             return []
         first = candidates[0]
         most = max(self.made_match(one) for one in candidates if (one.trim is None) is (first.trim is None))
-        why = self._why_filled(candidates) or self._why_first(first, most)
+        why = self.why_filled(candidates) or self._why_first(first, most)
         return [why, *(self._why_later(one, first) for one in candidates[1:])]
 
-    def _why_filled(self, candidates: Sequence[Candidate]) -> Note | None:
+    def why_filled(self, candidates: Sequence[Candidate]) -> Note | None:
         """Why a sheet with filled holes comes before trims with open ones; None where none does."""
         if candidates[0].trim is not None or not self.cuttable(candidates[0]):
             return None

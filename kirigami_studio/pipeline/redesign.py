@@ -41,10 +41,12 @@ from kirigami_studio.polish.vertex_drag import VertexDrag
 #: Steps of the fit before trimming.
 COVER_STEPS = 12
 #: Even panels count so many times as much in a cover as in whole sheets: it has match to spare, and small panels in a
-#: thin arm run into each other before it has closed.  In film, a leaf's covers jammed at 5 degrees and showed 0.972 and
-#: 0.928 of it as cut; with this they close at 0.989.  Twice as much is not enough for them, eight times too much for a
-#: plug.
-COVER_EVENNESS = 4.0
+#: thin arm run into each other before it has closed.  In film, a leaf's covers jammed at 5 degrees and showed 0.972
+#: and 0.928 of it as cut; with this they close at 0.989.  Twice as much is not enough for them, eight times too much
+#: for a plug.  Covers that are cut along the edge alone have the weight of the last steps of whole sheets: with 1 a
+#: mushroom's matches by 0.982 in the place of 0.990 (at 0 by 0.992, with panels that differ more), closed it does by
+#: 0.983.
+COVER_EVENNESS, EDGE_EVENNESS = 4.0, 0.3
 
 #: Accepted steps of one fit that the user asks for; most end before that because nothing more is gained.
 REFIT_STEPS = 20
@@ -221,6 +223,8 @@ def covered(
     even: float = 0.0,
     room: Room = NO_ROOM,
     least_gap: float = 0.0,
+    *,
+    notched: bool = True,
 ) -> Trimmed:
     """Make a cover of a candidate: a sheet over the target of which parts are cut away.
 
@@ -230,9 +234,11 @@ def covered(
         As for :func:`trimmed`.
     even : float
         Weight of even panels in whole sheets; a cover that is cut out of one sheet is fitted with
-        :data:`COVER_EVENNESS` times as much.
+        :data:`COVER_EVENNESS` times as much, without notches with :data:`EDGE_EVENNESS` times.
     least_gap : float, unit cells
         How far apart pins stay; 0 for sheets without.
+    notched : bool
+        Whether notches are filled and cut out, whole panels among them; else the edge is cut along the target.
 
     Returns
     -------
@@ -251,8 +257,9 @@ def covered(
         cancel,
         locked,
         least_panel=least_panel,
-        even=even if least_gap else COVER_EVENNESS * even,
-        notched=True,
+        even=even if least_gap else (COVER_EVENNESS if notched else EDGE_EVENNESS) * even,
+        notched=notched,
+        afresh=True,
         room=room,
         least_gap=least_gap,
     )
@@ -274,6 +281,7 @@ def _cover(
     least_panel: float,
     even: float = 0.0,
     notched: bool = False,
+    afresh: bool = False,
     room: Room,
     least_gap: float = 0.0,
 ) -> Cover:
@@ -296,6 +304,7 @@ def _cover(
             least_panel=least_panel,
             least_gap=least_gap,
             notched=notched,
+            afresh=afresh,
             # Locked voids keep their ratios, whatever room there is.
             room=partial((room if free else NO_ROOM).made, cancel=cancel),
         )
@@ -360,7 +369,9 @@ def refitted(
     gap = gap_in_cells(least_gap_mm, width_mm, score.evenness.width)
     ranking, room = Ranking(regular, width_mm, least_feature_mm, least_gap_mm), Room(width_mm, span_mm)
     if candidate.origin is Origin.COVERED:
-        cover = covered(candidate, target, keep(), cancel, table, least, even_weight(regular), room, gap).candidate
+        even, notched = even_weight(regular), candidate.trim is None or candidate.trim.deep
+        made = covered(candidate, target, keep(), cancel, table, least, even, room, gap, notched=notched)
+        cover = made.candidate
         _stop_if(cancel)
         return Refit(cover, ranking.worth_as_made(cover) > ranking.worth_as_made(candidate))
     with one_blas_thread():

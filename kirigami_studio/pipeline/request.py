@@ -320,7 +320,11 @@ def provenance(request: Request, digest: str) -> dict[str, str]:
     if request.fitted_starts:
         known["fitted_starts"] = str(request.fitted_starts)
     if request.near is not None:
-        mouths = b"" if request.near.has_even_rim else request.near.rim.positions.tobytes()
+        mouths = (
+            b""
+            if request.near.has_even_rim
+            else request.near.rim.positions.tobytes() + request.near.rim.hinges.tobytes()
+        )
         known["near"] = hashlib.sha256(request.near.field.ratio.tobytes() + mouths).hexdigest()[:16]
         known["nearness"] = f"{request.nearness:g}"
     if request.budget_seconds is not None:

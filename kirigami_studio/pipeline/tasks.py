@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Protocol
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
+from kirigami_studio.evaluate.evenness import evenness
 from kirigami_studio.evaluate.score import evaluate_many
 from kirigami_studio.evaluate.second_target import second_matches
 from kirigami_studio.evaluate.siou import exact_iou
@@ -22,10 +23,10 @@ from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.pipeline.rank import EVENNESS, MILDER, SYMMETRY, Ranking
 from kirigami_studio.pipeline.redesign import Room, covered, kept_symmetry, trimmed
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape
+from kirigami_studio.polish.continuation import FAIR_LOSS, Way, fit_by_stages, fit_from_uniform, fit_shape, sparingly
 from kirigami_studio.polish.covering import notches_filled
 from kirigami_studio.polish.junctions import junction_weight
-from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.polish.levenberg import Fit, polish
 from kirigami_studio.polish.objective import CONVERGED, FitPhase
 from kirigami_studio.polish.preferences import PREFERENCES, FitPreference
 from kirigami_studio.polish.symmetry import KeptSymmetry, shared_symmetries, symmetric_target
@@ -37,10 +38,13 @@ class TaskResult:
 
     candidate: Candidate | None  #: The new state of the design; None where the task brought nothing.
     evaluations: int  #: layouts decoded on the way
+    #: Of a trial, which makes no design: exact IoU less the price of uneven panels
+    worth: float = 0.0
+    parts: tuple[TaskResult, ...] = ()  #: What came of each of several designs that were worked on at once
 
 
 class Task(Protocol):
-    """Work on one design."""
+    """Work on one design, or on several at once."""
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Do the work; once ``stopped`` is true the best so far is the answer, within one step of the fit."""
@@ -67,44 +71,71 @@ class PolishTask:
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit as preferred, and more mildly where that gives away too much match."""
-        candidate, evaluations = self.candidate, 0
-        # A design of an earlier run keeps the second target that it was made for, or does without as it did.
-        request = replace(request, second=None if candidate.second is None else candidate.second.target)
-        symmetry = kept_symmetry(candidate.sheet)
-        prefer: FitPreference | None = request.prefer
-        while prefer is not None:
-            with one_blas_thread():
-                fit = polish(
-                    candidate.sheet,
-                    fit_target(request, symmetry),
-                    request.phi,
-                    self.steps,
-                    PREFERENCES[prefer],
-                    candidate.score.transform,
-                    stopped,
-                    phases=self._phases(request.even),
-                    least_panel=request.kept_size,
-                    least_gap=request.least_gap,
-                    free_rim=request.fit_options.free_rim,
-                    symmetry=symmetry,
-                    second=request.second,
-                    start_weight=request.start.weight,
-                )
-            (better,) = scored(request, [fit.sheet], candidate.index, candidate.origin, fitted=True)
-            evaluations += fit.evaluations + 1
-            if Ranking.of(request).improves(better, candidate, request.prefer):
-                before = candidate.sampled_sheet if candidate.polished else candidate.sheet
-                return TaskResult(replace(better, sampled_sheet=before), evaluations)
-            prefer = MILDER.get(prefer)
-        return TaskResult(None, evaluations)
+        return polished(request, [self], stopped)[0]
+
+    def fitted(self, request: Request, prefer: FitPreference, stopped: Callable[[], bool]) -> Fit:
+        """The candidate's sheet, fitted as preferred."""
+        candidate, symmetry = self.candidate, kept_symmetry(self.candidate.sheet)
+        with one_blas_thread():
+            return polish(
+                candidate.sheet,
+                fit_target(request, symmetry),
+                request.phi,
+                self.steps,
+                PREFERENCES[prefer],
+                candidate.score.transform,
+                stopped,
+                phases=self._phases(request.even),
+                least_panel=request.kept_size,
+                least_gap=request.least_gap,
+                free_rim=request.fit_options.free_rim,
+                symmetry=symmetry,
+                # A design of an earlier run keeps the second target that it was made for, or does without as it did.
+                second=None if candidate.second is None else candidate.second.target,
+                start_weight=request.start.weight,
+            )
 
     def _phases(self, even: float) -> tuple[FitPhase, ...]:
         if not even:
-            return (FitPhase(self.steps, least_gain=CONVERGED),)
+            return sparingly(FitPhase(self.steps, least_gain=CONVERGED))
         if self.last:
             weights = {"even": LAST_SHARE * even, "junctions": junction_weight(even)}
-            return (FitPhase(self.steps, LAST_TRUST, least_gain=CONVERGED, **weights),)
-        return (FitPhase(self.steps, FIRST_TRUST, FIRST_SHARE * even),)
+            return sparingly(FitPhase(self.steps, LAST_TRUST, least_gain=CONVERGED, **weights))
+        return sparingly(FitPhase(self.steps, FIRST_TRUST, FIRST_SHARE * even))
+
+
+@dataclass(frozen=True, slots=True)
+class PolishTogether:
+    """Fit several candidates."""
+
+    tasks: tuple[PolishTask, ...]
+
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
+        """Fit one after the other; once ``stopped`` is true the rest stay as they are."""
+        parts = tuple(polished(request, self.tasks, stopped))
+        return TaskResult(None, sum(part.evaluations for part in parts), parts=parts)
+
+
+def polished(request: Request, tasks: Sequence[PolishTask], stopped: Callable[[], bool]) -> list[TaskResult]:
+    """What fits of several candidates bring: the same as one by one, but scored together, in half of the time."""
+    candidates: dict[int, Candidate] = {}
+    evaluations = [0] * len(tasks)
+    ranking, prefer, left = Ranking.of(request), request.prefer, list(range(len(tasks)))
+    alone = replace(request, second=None)
+    while left:
+        fits = [tasks[place].fitted(request, prefer, stopped) for place in left]
+        found = scored(alone, [fit.sheet for fit in fits], 0, fitted=True)
+        for place, fit, better in zip(left, fits, found, strict=True):
+            before = tasks[place].candidate
+            second = before.second and second_matches([deploy(fit.sheet)], before.second.target)[0]
+            better = replace(better, index=before.index, origin=before.origin, second=second)
+            evaluations[place] += fit.evaluations + 1
+            if ranking.improves(better, before, request.prefer):
+                sampled = before.sampled_sheet if before.polished else before.sheet
+                candidates[place] = replace(better, sampled_sheet=sampled)
+        left = [place for place in left if place not in candidates] if prefer in MILDER else []
+        prefer = MILDER.get(prefer, prefer)
+    return [TaskResult(candidates.get(place), count) for place, count in enumerate(evaluations)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,15 +178,15 @@ class TrialTask:
     phases: tuple[FitPhase, ...]
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
-        """Fit by the phases, without a transport map; the exact IoU of the answer is that in the pose of the fit."""
+        """Fit by the phases, without a transport map, and measure the sheet in the pose of the fit."""
         free, start = request.fit_options.free_rim, request.start
         with one_blas_thread():
             fit = fit_by_stages(
                 request.silhouette, self.grid, request.phi, self.angle, self.phases, free, self.symmetry, start
             )
-        (found,) = scored(request, [fit.sheet], 0, Origin.GUIDED, fitted=True)
-        match = exact_iou(fit.pose.apply(deploy(fit.sheet).outline(request.phi)), request.silhouette)
-        return TaskResult(replace(found, score=replace(found.score, iou_exact=match)), fit.evaluations + 1)
+        found = deploy(fit.sheet)
+        match = exact_iou(fit.pose.apply(found.outline(request.phi)), request.silhouette)
+        return TaskResult(None, fit.evaluations + 1, match - EVENNESS * evenness(found).area_cv)
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,9 +235,13 @@ class TrimTask:
 
 @dataclass(frozen=True, slots=True)
 class CoverTask:
-    """Make a design that covers the target of a candidate, and cut its notches."""
+    """Make a design that covers the target of a candidate, and cut it along the target.
+
+    Where it is ``notched``, notches are filled in the fit and cut out, whole panels among them.
+    """
 
     candidate: Candidate
+    notched: bool = True
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit and cut, unless the design crosses itself."""
@@ -214,7 +249,9 @@ class CoverTask:
         keep = request.keep if one.trim is None else one.trim.keep
         try:
             room = Room(request.width_mm, request.span_mm)
-            made = covered(one, request.target, keep, stopped, None, least, even, room, request.least_gap)
+            made = covered(
+                one, request.target, keep, stopped, None, least, even, room, request.least_gap, notched=self.notched
+            )
         except KirigamiError:
             return TaskResult(None, 1)
         return TaskResult(made.candidate, made.evaluations)

@@ -37,31 +37,42 @@ def distances(design: Sheet | RatioField, others: Sequence[Sheet | RatioField]) 
     Infinite where the start outline or the cell is another.
     """
     sheet, rest = Sheet.of(design), [Sheet.of(other) for other in others]
-    ways, voids = np.stack(turns(sheet)), sheet.rows * sheet.columns
-    table = np.array([_state(other) for other in rest]).reshape(len(rest), 1, ways.shape[1])
+    hinges = _moves_hinges((sheet, *rest))
+    ways, voids = np.stack(turns(sheet, hinges)), sheet.rows * sheet.columns
+    table = np.array([_state(other, hinges) for other in rest]).reshape(len(rest), 1, ways.shape[1])
     nearest = np.sqrt(np.square(table - ways).sum(axis=2) / voids).min(axis=1)
     nearest[[_kind(other) != _kind(sheet) for other in rest]] = np.inf
     return np.asarray(nearest)
 
 
-def turns(design: Sheet | RatioField) -> list[FloatArray]:
+def turns(design: Sheet | RatioField, hinges: bool = False) -> list[FloatArray]:
     """z, then the offsets of the mouths, of the same sheet in all its turned positions: one, two or four (m n + R,).
+
+    Those of the edge hinges follow where they are asked for (m n + R + E,).
 
     A sheet with a start outline of its own has one position; with cells that are not square it has no quarter turns.
     """
     sheet = Sheet.of(design)
-    state, symmetry = _state(sheet), Symmetry.QUARTER_TURN
+    state, symmetry = _state(sheet, hinges), Symmetry.QUARTER_TURN
     if sheet.cell[0] != sheet.cell[1] or not symmetry.fits(*sheet.grid):
         symmetry = Symmetry.HALF_TURN
     if sheet.start is not None or not symmetry.fits(*sheet.grid):
         return [state]
     tables = symmetry.on(*sheet.grid)
-    return [state, *(sign * state[source] for source, sign in zip(tables.source, tables.sign, strict=True))]
+    every, signs = tables.source[:, : state.size], tables.sign[:, : state.size]
+    return [state, *(sign * state[source] for source, sign in zip(every, signs, strict=True))]
 
 
-def _state(sheet: Sheet) -> FloatArray:
-    """z row by row, then how far the mouths are from their even places, unit cells: (m n + R,)."""
-    return np.concatenate([sheet.field.log10.ravel(), sheet.rim.offsets(*sheet.grid)])
+def _state(sheet: Sheet, hinges: bool) -> FloatArray:
+    """z row by row, then how far mouths are from their even places, unit cells, and edge hinges from halfway."""
+    rim, grid = sheet.rim, sheet.grid
+    parts = [sheet.field.log10.ravel(), rim.offsets(*grid)]
+    return np.concatenate([*parts, rim.hinge_offsets(*grid)] if hinges else parts)
+
+
+def _moves_hinges(sheets: Sequence[Sheet]) -> bool:
+    """Whether any of some sheets has edge hinges that are not halfway."""
+    return not all(sheet.rim.folds_shut for sheet in sheets)
 
 
 def _kind(sheet: Sheet) -> Hashable:
@@ -109,6 +120,7 @@ def _alike_of_a_kind(sheets: Sequence[Sheet]) -> BoolArray:
         if symmetry.fits(*grid):
             tables = symmetry.on(*grid)
             for source, sign in zip(tables.source, tables.sign, strict=True):
+                source, sign = source[: looks.shape[1]], sign[: looks.shape[1]]
                 np.maximum(products, (sign * looks[:, source]) @ looks.T, out=products)
     alike: BoolArray = size[:, None] + size - 2.0 * products < SAME_LOOK**2 * looks.shape[1]
     return alike
@@ -144,11 +156,12 @@ def distinct(candidates: Sequence[Candidate], others: Sequence[Candidate]) -> tu
     if not candidates:
         return ()
     everything = [one.sheet for one in (*others, *candidates)]
-    known, kinds = np.array([_state(sheet) for sheet in everything]), [_kind(sheet) for sheet in everything]
+    hinges, kinds = _moves_hinges(everything), [_kind(sheet) for sheet in everything]
+    known = np.array([_state(sheet, hinges) for sheet in everything])
     size = np.square(known).sum(axis=1)
     own = size[len(others) :]
     nearest = np.full((len(candidates), len(known)), np.inf)
-    ways = [turns(one.sheet) for one in candidates]
+    ways = [turns(one.sheet, hinges) for one in candidates]
     for number in range(max(len(way) for way in ways)):
         turned = np.array([way[number % len(way)] for way in ways])
         np.minimum(nearest, own[:, None] + size - 2.0 * (turned @ known.T), out=nearest)

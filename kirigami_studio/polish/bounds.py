@@ -12,7 +12,7 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
 from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import RIM_REACH, Rim, Sheet
+from kirigami_studio.lattice.sheet import HINGE_REACH, RIM_REACH, Rim, Sheet
 from kirigami_studio.lattice.symmetry import GridSymmetry
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.pinwheel import least_log_ratio
@@ -41,6 +41,10 @@ class ShapeBounds:
             start = np.concatenate([z, sheet.rim.offsets(*sheet.grid)])
             reach = np.concatenate([reach, np.full(start.size - z.size, RIM_REACH)])
             fixed = np.concatenate([fixed, model.held_mouths])
+        if model.free_hinges:
+            hinges = sheet.rim.hinge_offsets(*sheet.grid)
+            start, reach = np.concatenate([start, hinges]), np.append(reach, np.full(hinges.size, HINGE_REACH))
+            fixed = np.append(fixed, np.zeros(hinges.size, dtype=np.bool_))
         low, high = np.where(fixed, start, -reach), np.where(fixed, start, reach)
         return cls(sheet, start, low, high, Basis.of(start.size, symmetry), locked)
 
@@ -76,5 +80,8 @@ class ShapeBounds:
         found = RatioField.from_log10(np.round(shape[:voids], 9).reshape(sheet.grid))
         if self._locked.any():
             found = RatioField(np.where(self._locked, sheet.field.ratio, found.ratio))
-        rim = Rim.moved(*sheet.grid, np.round(shape[voids:], 9)) if shape.size > voids else sheet.rim
+        rim = sheet.rim
+        if shape.size > voids:
+            mouths = voids + rim.positions.size
+            rim = Rim.moved(*sheet.grid, np.round(shape[voids:mouths], 9), np.round(shape[mouths:], 9))
         return Sheet(found, rim, sheet.start, sheet.cell)

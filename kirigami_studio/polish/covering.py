@@ -79,6 +79,7 @@ def fit_cover(
     least_panel: float = 0.0,
     least_gap: float = 0.0,
     notched: bool = False,
+    afresh: bool = False,
     room: Callable[[Deployment], Deployment] = lambda deployment: deployment,
 ) -> Cover:
     """Fit a polished sheet so that its trimmed silhouette matches best.
@@ -101,8 +102,9 @@ def fit_cover(
     free_rim, symmetry, even, least_panel, least_gap
         As for :func:`polish`.
     notched : bool
-        Whether notches that no closed sheet shows are cut out in any case, and the sheet is trimmed after the fit
-        alone: for one that was fitted to the target itself, which this one would not be a better trim of.
+        Whether notches that no closed sheet shows are cut out in any case.
+    afresh : bool
+        Whether the sheet is trimmed after the fit alone: where it is to be another design, not a better trim.
     room : callable
         Makes room for the connectors of a sheet before it is trimmed: afterwards its panels cannot be changed.
 
@@ -135,7 +137,7 @@ def fit_cover(
             wanted, place, cut = filled.outline, filled.frame, _trimmed_deep
             pose = place.compose(laid)
     first = Fit(sheet, pose, 0.0, 0, 0)
-    best = None if notched else trimmed(first)
+    best = None if afresh else trimmed(first)
     fit = polish(
         sheet,
         wanted,

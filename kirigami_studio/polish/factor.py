@@ -14,7 +14,7 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg.lapack import dgbsv, dgetrf, dgetrs
+from scipy.linalg.lapack import dgbsv, dgesv, dgetrf, dgetrs
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 
@@ -105,12 +105,12 @@ class _ByRows:
     @classmethod
     def of(cls, coupling: FloatArray, slot: IntArray) -> _ByRows:
         lower, upper = coupling
-        identity = np.eye(lower.shape[1])
-        inverse, transfer = np.empty_like(lower), np.empty_like(upper)
-        inverse[0], transfer[0] = identity, upper[0]
+        width = lower.shape[1]
+        right = np.concatenate([np.broadcast_to(np.eye(width), upper.shape), upper], axis=2)
+        identity, found = right[0, :, :width], right.copy()
         for i in range(1, len(lower)):
-            inverse[i] = np.linalg.inv(identity - lower[i] @ transfer[i - 1])
-            np.matmul(inverse[i], upper[i], out=transfer[i])
+            found[i] = dgesv(identity - lower[i] @ found[i - 1, :, width:], right[i])[2]
+        inverse, transfer = found[:, :, :width].copy(), found[:, :, width:].copy()
         return cls(lower, slot, inverse, transfer)
 
     def solve(self, right: FloatArray) -> FloatArray:

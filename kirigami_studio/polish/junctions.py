@@ -56,6 +56,14 @@ class JunctionAngles:
             self.node[chosen], self.before[chosen], self.after[chosen], self.sine[chosen], self.slope[chosen]
         )
 
+    def pulled(self, weight: FloatArray, node_count: int) -> FloatArray:
+        """Derivative (N, 2) by the nodes of the sines' sum, each times its ``weight`` (J,)."""
+        nodes, pulled = np.concatenate([self.before, self.after, self.node]), np.empty((node_count, 2))
+        for axis in (0, 1):
+            before, after = weight * self.slope[:, 0, axis], weight * self.slope[:, 1, axis]
+            pulled[:, axis] = np.bincount(nodes, np.concatenate([before, after, -before - after]), node_count)
+        return pulled
+
     def reach(self, node_count: int) -> tuple[FloatArray, FloatArray]:
         """Matrices (J, N) that read changes of the sines off motions of the nodes in x and in y."""
         rows = np.arange(len(self))

@@ -56,12 +56,12 @@ class Matching:
 
     def _stretching(self, outline: FloatArray, trust: float) -> FloatArray:
         """Derivative (2 L,) of the cost by vertices through the edge lengths that weight the outward distances."""
-        edge = np.roll(outline, -1, axis=0) - outline
-        length = np.maximum(np.hypot(*edge.T), 1e-12)
+        edge = np.concatenate([outline[1:], outline[:1]]) - outline
+        length = np.maximum(np.hypot(edge[:, 0], edge[:, 1]), 1e-12)
         outward = slice(0, len(outline) * EDGE_SHARES.size)
         cost = (self.weight[outward] * _robust(self.distance[outward], trust)).reshape(len(outline), -1)
-        pull = (cost.sum(axis=1) / length)[:, None] * (edge / length[:, None])
-        slope: FloatArray = (np.roll(pull, 1, axis=0) - pull).ravel()
+        pull = (cost.sum(axis=1) / np.square(length))[:, None] * edge
+        slope: FloatArray = (np.concatenate([pull[-1:], pull[:-1]]) - pull).ravel()
         return slope
 
     def pull(self, force: FloatArray, count: int) -> FloatArray:
@@ -85,12 +85,19 @@ class Matching:
         stiff = stiffness / np.square(np.maximum(self.distance, 1e-12))
         x, y, share, rest = self.gap[:, 0], self.gap[:, 1], self.share, 1.0 - self.share
         # By edge, the squares xx, xy, yy at its start, then of start and end together, then at its end.
-        squares = np.stack([stiff * x * x, stiff * x * y, stiff * y * y])
-        parts = np.stack([rest * rest * squares, rest * share * squares, share * share * squares])
+        squares = np.empty((3, len(stiff)))
+        squares[0], squares[2] = stiff * x, stiff * y
+        np.multiply(squares[0], y, out=squares[1])
+        squares[0] *= x
+        squares[2] *= y
+        parts = np.empty((3, 3, len(stiff)))
+        for number, weight in enumerate((rest * rest, rest * share, share * share)):
+            np.multiply(weight, squares, out=parts[number])
         place = np.arange(9)[:, None] * count + self.edge
         first, both, last = np.bincount(place.ravel(), parts.ravel(), 9 * count).reshape(3, 3, count)[:, [0, 1, 1, 2]]
         blocks = np.empty((count, 2, 3, 2))
-        for number, block in enumerate((both[:, np.arange(-1, count - 1)], first + np.roll(last, 1, axis=1), both)):
+        before = np.arange(-1, count - 1)
+        for number, block in enumerate((both[:, before], first + last[:, before], both)):
             blocks[:, :, number] = block.T.reshape(count, 2, 2)
         column, start = _neighbouring(count)
         return csr_matrix((blocks.ravel(), column, start), shape=(2 * count, 2 * count))

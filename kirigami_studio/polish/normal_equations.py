@@ -14,11 +14,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dgesv, dpotrf, dtrtrs
+from scipy.linalg.lapack import dgesv, dpotrf, dtrtrs, spotrf, strtrs
 from scipy.sparse import csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 
+#: From this many variables on, and with this much damping, single precision factors the matrix in half of the time: its
+#: step is as good, and what it promises and gains is counted in double precision.
+SINGLE, SINGLE_DAMPING = 800, 1e-5
 #: Share of the mean of the diagonal that the damping adds to each entry.
 FLOOR = 1e-3
 
@@ -64,21 +67,29 @@ class Damped:
     def of(cls, model: Quadratic, damping: float, held: BoolArray) -> Damped:
         """Factor a model with a damping relative to its diagonal, (V,) variables ``held`` where they are."""
         diagonal = model.diagonal()
-        inner, outline = model.inner.copy(), model.outline.copy()
-        inner[np.diag_indices_from(inner)] += damping * (diagonal + FLOOR * diagonal.mean())
-        inner[held], inner[:, held], outline[:, held] = 0.0, 0.0, 0.0
-        inner[held, held] = 1.0
+        inner, outline = model.inner.copy(), model.outline
+        inner.ravel()[:: len(inner) + 1] += damping * (diagonal + FLOOR * diagonal.mean())
+        if held.any():
+            outline = outline.copy()
+            inner[held], inner[:, held], outline[:, held] = 0.0, 0.0, 0.0
+            inner[held, held] = 1.0
         # LAPACK itself: at small grids SciPy's own checks take longer than the work.  A symmetric matrix is its own
         # transpose, which is stored as LAPACK wants it.
+        if len(inner) >= SINGLE and damping >= SINGLE_DAMPING:
+            factor, failed = spotrf(inner.T, lower=1, clean=0)
+            if not failed:
+                reach = strtrs(factor, outline.T, lower=1)[0]
+                return cls(held, factor, reach, (reach.T @ reach).astype(np.float64))
         factor = dpotrf(inner.T, lower=1, clean=0, overwrite_a=1)[0]
-        reach = dtrtrs(factor, outline.T, lower=1, overwrite_b=1)[0]
+        reach = dtrtrs(factor, outline.T, lower=1)[0]
         return cls(held, factor, reach, reach.T @ reach)
 
     def step(self, gradient: FloatArray, spread: FloatArray | csr_matrix, stiffer: float = 1.0) -> FloatArray:
         """The step (V,) for a gradient (V,) and a ``spread`` (2 L, 2 L), with all but the match times ``stiffer``."""
-        across = dtrtrs(self._factor, np.where(self.held, 0.0, gradient), lower=1)[0]
+        solve = strtrs if self._factor.dtype == np.float32 else dtrtrs
+        across = solve(self._factor, np.where(self.held, 0.0, gradient), lower=1)[0]
         system = spread @ self._compliance
-        system[np.diag_indices_from(system)] += stiffer
+        system.ravel()[:: len(system) + 1] += stiffer
         back = dgesv(system, spread @ (across @ self._reach), overwrite_a=1)[2]
-        step: FloatArray = dtrtrs(self._factor, self._reach @ back - across, lower=1, trans=1)[0]
-        return step / stiffer
+        step = solve(self._factor, self._reach @ back - across, lower=1, trans=1)[0]
+        return np.asarray(step / stiffer, dtype=np.float64)

@@ -50,6 +50,12 @@ TRUST = 0.005
 #: designs stays within 0.0002.  Where only the match counts it would take 0.0001 off an IoU of 0.9987.
 CONVERGED, SETTLED = 1e-4, 2e-3
 
+#: Corrections follow a step that lowered the cost by this share, and in runs, which take many short fits, by the
+#: second.  In 10 steps from the uniform sheet of 16 x 16 voids to 8 shapes corrections after every step reach a mean
+#: exact IoU of 0.9738, after steps that gained 0.02 0.9730, after those that gained 0.25 0.9633, by 5 and 27 % less
+#: processor time; in runs for a heart, a butterfly and a star first designs are as good with the second share.
+CORRECTED, SPARINGLY = 0.02, 0.25
+
 #: Number of pose parameters: log scale, angle, shift.
 POSE = 4
 NO_SIZES = panel_sizes(topology(2, 2).uniform_nodes, 2, 2).below(0.0)
@@ -79,6 +85,7 @@ class FitPhase:
     transport: float = 0.0  #: Weight of the transport map of the inside, see ``transport_map``
     least_gain: float = SETTLED  #: The phase ends with a step that lowers the cost by no more than this share
     junctions: float = 0.0  #: Weight of cuts that meet at shallow angles, see ``junctions``
+    corrected: float = CORRECTED  #: Corrections follow a step that lowers the cost by this share
 
 
 #: Nothing but the match and what the ratios prefer.
@@ -88,7 +95,8 @@ MATCH_ALONE = FitPhase(0)
 class Objective:
     """Cost of states (shape, pose) for one target.
 
-    A state is a vector: the shape (z of all voids row by row, then offsets of the mouths where the rim is free), then
+    A state is a vector: the shape (z of all voids row by row, then offsets of the mouths and, half open, of the edge
+    hinges where the rim is free), then
     log scale, angle, shift x, shift y of the pose that carries the layout to the target's unit-area frame; and the same
     of the layout at the second target's angle, where there is one.
 
@@ -221,13 +229,19 @@ class Objective:
             outline = np.concatenate([outline, other])
         return Slopes(basis, outline, motion, stiffness, centroids)
 
-    def quadratic(self, look: Look, slopes: Slopes) -> Quadratic:
-        """Gradient and Gauss-Newton approximation at a state, from the derivatives there or nearby."""
+    def quadratic(self, look: Look, slopes: Slopes, opening: FloatArray | None = None) -> Quadratic:
+        """Gradient and Gauss-Newton approximation at a state, from the derivatives there or nearby.
+
+        ``opening`` (V, V) is that of open junctions at a state nearby, to be used again, see :meth:`opening`.
+        """
         inner = np.zeros((slopes.outline.shape[1],) * 2)
         shape, basis, own = self._parts(look.state)[0], slopes.basis, inner[: -self.poses, : -self.poses]
         own += basis.matrix(*self.terms.curvature(shape[: self.model.voids]))
         if self.even is not None and slopes.stiffness is not None:
             own += self.phase.even * slopes.stiffness
+        opening = self.opening(look, slopes) if opening is None else opening
+        if opening is not None:
+            own += opening
         priced = self._priced(look)
         if priced is not None:
             grown = slopes.motion.slopes(*priced[1], basis)
@@ -238,6 +252,13 @@ class Objective:
         if look.gaps is not None and slopes.centroids is not None:
             inner += 2.0 * self.phase.transport / len(look.gaps) * (slopes.centroids.T @ slopes.centroids)
         return Quadratic(self.gradient(look, slopes), inner, slopes.outline, self.spread(look))
+
+    def opening(self, look: Look, slopes: Slopes) -> FloatArray | None:
+        """Gauss-Newton approximation (V, V) of the second derivative of open junctions, where the phase has them."""
+        if not len(look.shallow):
+            return None
+        grown = slopes.motion.slopes(*look.shallow.reach(self.model.node_count), slopes.basis)
+        return np.asarray(2.0 * self._each_junction * (grown.T @ grown))
 
     def gradient(self, look: Look, slopes: Slopes) -> FloatArray:
         """Derivative (V + P,) of the cost, P numbers of poses, from the derivatives at the state or nearby."""
@@ -261,7 +282,10 @@ class Objective:
 
     def _cut_by_chords(self, chords: Chords, shape: FloatArray) -> FloatArray:
         """Derivative (S,) by the shape of what chords cut off."""
-        return np.append(np.zeros(self.model.voids), chords.slopes(self.model.positions(shape)))
+        cut = np.zeros(self.model.size)
+        slopes = chords.slopes(self.model.positions(shape))
+        cut[self.model.voids : self.model.voids + slopes.size] = slopes
+        return cut
 
     def spread(self, look: Look) -> csr_matrix:
         """Gauss-Newton approximation of the second derivative of the match by the outline's vertices: (2 L, 2 L); those
@@ -277,6 +301,10 @@ class Objective:
     def _force(self, look: Look) -> FloatArray | None:
         """Derivative (N, 2) of the terms on panels by the compact nodes; None where there are none."""
         force = None if look.even is None else self.phase.even * look.even.pull()
+        if len(look.shallow):
+            weight = 2.0 * self._each_junction * (look.shallow.sine - OPEN)
+            opened = look.shallow.pulled(weight, self.model.node_count)
+            force = opened if force is None else force + opened
         priced = self._priced(look)
         if priced is not None:
             grown = np.stack([2.0 * (priced[0] @ along) for along in priced[1]], axis=1)
@@ -284,8 +312,8 @@ class Objective:
         return force
 
     def _priced(self, look: Look) -> tuple[FloatArray, tuple[FloatArray, FloatArray]] | None:
-        """By how much sizes, junctions and areas are beyond what is asked of them, times the root of their weight (F,),
-        and matrices (F, N) that read changes of these off motions of the nodes in x and in y; None where none are.
+        """By how much sizes and areas are beyond what is asked of them, times the root of their weight (F,), and
+        matrices (F, N) that read changes of these off motions of the nodes in x and in y; None where none are.
         """
         count = self.model.node_count
         terms = [
@@ -293,7 +321,6 @@ class Objective:
             for weight, beyond, reach in (
                 (PENALTY, look.small.size - self.least, look.small.reach),
                 (self._gap_penalty, look.close.spare, look.close.reach),
-                (self._each_junction, look.shallow.sine - OPEN, look.shallow.reach),
                 (self._each_large, look.large.area - LARGE, look.large.reach),
             )
             if len(beyond)

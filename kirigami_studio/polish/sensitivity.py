@@ -2,7 +2,8 @@
 
 With A P = b, changing the ratio of one void touches the two rows of the nodes that rest on its slit, so
 dP = A^-1 g with g_f = x ln 10 / (1 + x)^2 (P[first end] - P[second end]) per unit of z = log10 x.  Moving a mouth
-moves b, so dP = A^-1 S c with the coupling S of free nodes to given ones and c the given nodes that follow the mouth.
+moves b, so dP = A^-1 S c with the coupling S of free nodes to given ones and c the given nodes that follow the mouth;
+so does moving an edge hinge between its mouths, which sheets that show their target half open may.
 The outline is a constant matrix times P, hence one adjoint solve with the outline's rows gives all its derivatives.
 """
 
@@ -10,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from enum import Enum
 from functools import lru_cache
 from itertools import pairwise
 
@@ -19,7 +21,7 @@ from scipy.sparse import csc_matrix, csr_matrix
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, even_part_of_outline
-from kirigami_studio.lattice.sheet import Rim, RimPath, Sheet, rim_table
+from kirigami_studio.lattice.sheet import Rim, RimPath, RimTable, Sheet, rim_table
 from kirigami_studio.lattice.topology import topology
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.chords import Chords
@@ -54,9 +56,10 @@ class _Plan:
     resting: IntArray  #: (Q,); free rows that rest on given nodes, ascending
     #: (entry, row, node) int arrays; stencil weights that couple rows of ``resting`` to given nodes, all numbers.
     to_given: tuple[IntArray, IntArray, IntArray]
-    #: (entry, row, mouth, share) arrays; the same with each of the mouths that the given node follows, and how far.
-    to_mouth: tuple[IntArray, IntArray, IntArray, FloatArray]
-    known: tuple[IntArray, IntArray]  #: rows of ``resting`` and mouths that these couple
+    #: (entry, row, given, mover) arrays; the same with each of the movers that the given node follows: mouths, then
+    #: edge hinges where these are free.
+    to_mover: tuple[IntArray, IntArray, IntArray, IntArray]
+    known: tuple[IntArray, IntArray]  #: rows of ``resting`` and movers that these couple
     loop: IntArray  #: (L,); the outline's nodes
     even: csr_matrix  #: (L, N), sparse; rows that read U off the compact nodes
     #: along_free, along_given: (K, 2 L) and (G, 2 L); columns that read U + V of the outline, then U - V, off free and
@@ -97,8 +100,16 @@ class TwoEntryRows:
         return product
 
 
+class _Loop(Enum):
+    """Nodes of the outline: all of them, those of the second compact state, and those where edges differ there."""
+
+    OPEN = "outline_nodes"
+    ZIPPED = "outline_at_zero"
+    HALF_ZIPPED = "outline_half_zipped"
+
+
 @lru_cache(maxsize=16)
-def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
+def _plan(rows: int, columns: int, kind: _Loop, free_hinges: bool) -> _Plan:
     tables = topology(rows, columns)
     node, ends, void = barycentric_stencil(rows, columns)
     # The h nodes have the lowest numbers, row by row.
@@ -110,8 +121,8 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     rim = table.node
     rim_position = np.full(tables.node_count, -1)
     rim_position[rim] = np.arange(rim.size)
-    keep = np.isin(tables.outline_nodes, tables.outline_at_zero) if zipped else np.ones(tables.outline_nodes.size, bool)
-    loop = tables.outline_nodes[keep]
+    loop: IntArray = getattr(tables, kind.value)
+    keep = np.isin(tables.outline_nodes, loop)
     whole = np.zeros((loop.size, tables.node_count))
     whole[np.arange(loop.size), loop] = 1.0
     whole[:, 0] -= 1.0
@@ -128,9 +139,12 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     resting = np.unique(row[known])
     entry_known, row_known = entry[known], np.searchsorted(resting, row[known])
     node_known = ends.ravel()[known]
-    of_mouth = table.share[:, table.mouths][rim_position[node_known]]
-    coupled, mouth = np.nonzero(of_mouth)
-    pairs = np.unique(row_known[coupled] * table.mouths.size + mouth)
+    followed = table.share[:, table.mouths]
+    if free_hinges:
+        followed = np.concatenate([followed, _hinge_columns(table)], axis=1)
+    given = rim_position[node_known]
+    coupled, mover = np.nonzero(followed[given])
+    pairs = np.unique(row_known[coupled] * followed.shape[1] + mover)
     slot = node[:h] - (columns + 1)
     (up, left), (down, right) = (np.divmod(slot[place], columns + 1) for place in (h_to_v[1][first], v_to_h[2][second]))
     around = (((down > up) * rows + up) * (columns + 1) + left) * (columns + 1) + right
@@ -149,8 +163,8 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
         band=Band.of(h_to_v[1][first], v_to_h[2][second], h),
         resting=resting,
         to_given=(entry_known, row_known, node_known),
-        to_mouth=(entry_known[coupled], row_known[coupled], mouth, of_mouth[coupled, mouth]),
-        known=(pairs // table.mouths.size, pairs % table.mouths.size),
+        to_mover=(entry_known[coupled], row_known[coupled], given[coupled], mover),
+        known=(pairs // followed.shape[1], pairs % followed.shape[1]),
         loop=loop,
         even=csr_matrix(even),
         along_free=np.ascontiguousarray(reads[node]),
@@ -158,24 +172,34 @@ def _plan(rows: int, columns: int, zipped: bool) -> _Plan:
     )
 
 
+def _hinge_columns(table: RimTable) -> FloatArray:
+    """Which given node (G,) each edge hinge (E,) is: (G, E), 1 or 0."""
+    columns = np.zeros((table.node.size, table.hinges.size))
+    columns[table.hinges, np.arange(table.hinges.size)] = 1.0
+    return columns
+
+
 class OutlineModel:
     """Outline, compact nodes and their derivatives for one grid, angle and start outline.
 
     The *shape* of a sheet is a vector: z = log10 of the ratios row by row, and where the rim is free, the offsets of
-    the mouths from their even places, in the order of :class:`~kirigami_studio.lattice.sheet.RimTable`.
+    the mouths from their even places, in the order of :class:`~kirigami_studio.lattice.sheet.RimTable`; then, where
+    edge hinges are free, their offsets from halfway.
 
     Parameters
     ----------
     rows, columns : int
     phi : float, radians, in [0, pi)
     rim : Rim, optional
-        Where the mouths stay if the rim is not free; even by default.
+        Where the mouths and edge hinges stay if the rim is not free; even by default.
     start, cell
         As for :class:`~kirigami_studio.lattice.sheet.Sheet`.
     free_rim : bool
         Whether the mouths belong to the shape.
     start_weight : float
         How firmly a round start is held where they do, see ``chords``.
+    free_hinges : bool
+        Whether the edge hinges belong to the shape as well; only beside a free rim.
     """
 
     def __init__(
@@ -188,31 +212,55 @@ class OutlineModel:
         cell: tuple[float, float] = (1.0, 1.0),
         free_rim: bool = False,
         start_weight: float = 1.0,
+        free_hinges: bool = False,
     ) -> None:
         self.rows, self.columns, self.phi, self.free_rim = rows, columns, phi, free_rim
+        zipped = phi < ZIPPED_BELOW
+        #: Whether edge hinges belong to the shape
+        self.free_hinges = free_hinges
         self._start, self._cell = start, cell
         self.has_start = start is not None  #: Whether it is not the paper's rectangle
         self._path, self._table = RimPath(rows, columns, start, cell), rim_table(rows, columns)
         self._rim = rim or Rim.even(rows, columns)
-        self._plan = _plan(rows, columns, phi < ZIPPED_BELOW)
-        #: How the given nodes follow the mouths, (G, R); no mouths where the rim is not free.
-        self._share = self._table.share[:, self._table.mouths if free_rim else []]
+        kind = _Loop.OPEN if not zipped else _Loop.ZIPPED if self._rim.folds_shut else _Loop.HALF_ZIPPED
+        self._plan = _plan(rows, columns, kind, self.free_hinges)
         self._patterns: dict[Basis, tuple[IntArray, FloatArray, IntArray, IntArray]] = {}
         self._half = 0.5 * (math.pi - phi)
         self.voids = rows * columns
-        self.size = self.voids + (self._table.even.size if free_rim else 0)
-        self._given = self._given_nodes(self._rim.positions)
+        mouths, hinges = self._table.even.size if free_rim else 0, self._table.hinges.size if self.free_hinges else 0
+        self.size = self.voids + mouths + hinges
+        self._mouths = slice(self.voids, self.voids + mouths)
+        self._given = self._given_nodes(self._rim.positions, self._rim.hinges)
+        #: Along straight sides, with edge hinges that stay, mouths move by as much as their offsets: given nodes
+        #: without any, how these follow the mouths (G, R), and the way (R, 2).
+        self._straight: tuple[FloatArray, FloatArray, FloatArray] | None = None
+        if free_rim and start is None and not self.free_hinges:
+            even, hinges_kept = self._table.even, self._rim.hinges
+            follow = self._table.shares(hinges_kept)[:, self._table.mouths]
+            self._straight = self._given_nodes(even, hinges_kept), follow, self._path.slopes(even)
         #: What long chords of a round start cost, where the rim is free.
         self.chords = Chords.of(self._path, start_weight) if free_rim else None
 
     @classmethod
-    def of(cls, sheet: Sheet, phi: float, free_rim: bool = False, start_weight: float = 1.0) -> OutlineModel:
+    def of(
+        cls, sheet: Sheet, phi: float, free_rim: bool = False, start_weight: float = 1.0, free_hinges: bool = False
+    ) -> OutlineModel:
         """The model in which a sheet moves."""
-        return cls(sheet.rows, sheet.columns, phi, sheet.rim, sheet.start, sheet.cell, free_rim, start_weight)
+        rows, columns = sheet.grid
+        return cls(rows, columns, phi, sheet.rim, sheet.start, sheet.cell, free_rim, start_weight, free_hinges)
 
     def at(self, phi: float) -> OutlineModel:
         """The model of the same sheets at another angle, radians."""
-        return OutlineModel(self.rows, self.columns, phi, self._rim, self._start, self._cell, self.free_rim)
+        return OutlineModel(
+            self.rows,
+            self.columns,
+            phi,
+            self._rim,
+            self._start,
+            self._cell,
+            self.free_rim,
+            free_hinges=self.free_hinges,
+        )
 
     @property
     def node_count(self) -> int:
@@ -225,7 +273,11 @@ class OutlineModel:
 
     def positions(self, shape: FloatArray) -> FloatArray:
         """The mouths' positions (R,) of a shape, unit cells."""
-        return self._table.even + shape[self.voids :] if self.free_rim else self._rim.positions
+        return self._table.even + shape[self._mouths] if self.free_rim else self._rim.positions
+
+    def hinges(self, shape: FloatArray) -> FloatArray:
+        """The edge hinges' offsets from halfway (E,) of a shape; empty where all are halfway."""
+        return shape[self._mouths.stop :] if self.free_hinges else self._rim.hinges
 
     def nodes(self, shape: FloatArray) -> FloatArray:
         """Compact nodes (N, 2) of a shape (S,), unit cells; equal to ``Deployment.compact``."""
@@ -256,21 +308,47 @@ class OutlineModel:
         plan, width = self._plan, self.columns + 1
         coupling = np.bincount(plan.around[2], plan.paths(decoded.weights), 2 * self.rows * width * width)
         factor = factored(np.asarray(coupling, dtype=np.float64).reshape(2, self.rows, width, width), plan.slot)
-        along, mouths = self._along(decoded.shape), self._share.shape[1]
-        known = np.zeros((plan.resting.size, mouths))
-        if mouths:
-            entry, row, mouth, share = plan.to_mouth
-            known += np.bincount(row * mouths + mouth, decoded.weights[entry] * share, known.size).reshape(known.shape)
+        along, share = self._along(decoded.shape), self._followed(decoded.shape)
+        movers = share.shape[1]
+        known = np.zeros((plan.resting.size, movers))
+        if movers:
+            entry, row, given, mover = plan.to_mover
+            each = decoded.weights[entry] * share[given, mover]
+            known += np.bincount(row * movers + mover, each, known.size).reshape(known.shape)
         system = _FactoredField(decoded.weights, factor)
-        return NodeMotion(self, system, self._pull(decoded), along, self._share, known)
+        return NodeMotion(self, system, self._pull(decoded), along, share, known)
+
+    def _followed(self, shape: FloatArray) -> FloatArray:
+        """How the given nodes follow the mouths, then the edge hinges: (G, W); none where the rim is not free."""
+        mouths = self._table.mouths if self.free_rim else np.zeros(0, np.intp)
+        share: FloatArray = self._table.shares(self.hinges(shape))[:, mouths]
+        return np.concatenate([share, _hinge_columns(self._table)], axis=1) if self.free_hinges else share
 
     def _along(self, shape: FloatArray) -> FloatArray:
-        """Derivative of the mouths' points by their offsets, (R, 2); none where the rim is not free."""
-        return self._path.slopes(self.positions(shape)) if self.free_rim else np.zeros((0, 2))
+        """Derivative of the points of mouths and edge hinges by their offsets, (W, 2); none without a free rim."""
+        if not self.free_rim:
+            return np.zeros((0, 2))
+        if self._straight is not None:
+            return self._straight[2]
+        positions = self.positions(shape)
+        slopes = self._path.slopes(positions)
+        if not self.free_hinges:
+            return slopes
+        before, after = self._path.anchors(positions)[self._table.between.T]
+        return np.concatenate([slopes, after - before])
 
-    def _given_nodes(self, positions: FloatArray) -> FloatArray:
+    def _given_nodes(self, positions: FloatArray, hinges: FloatArray) -> FloatArray:
         nodes = np.zeros((self.node_count, 2))
-        nodes[self._table.node] = self._table.share @ self._path.anchors(positions)
+        nodes[self._table.node] = self._table.shares(hinges) @ self._path.anchors(positions)
+        return nodes
+
+    def _given_of(self, shape: FloatArray) -> FloatArray:
+        """Compact nodes (N, 2) of which only the given ones count."""
+        if self._straight is None:
+            return self._given_nodes(self.positions(shape), self.hinges(shape)) if self.free_rim else self._given.copy()
+        even, follow, along = self._straight
+        nodes = even.copy()
+        nodes[self._table.node] += follow @ (shape[self.voids :, None] * along)
         return nodes
 
     def _pull(self, decoded: CompactLayout) -> FloatArray:
@@ -284,17 +362,16 @@ class OutlineModel:
     def decoded(self, shape: FloatArray) -> CompactLayout:
         """The compact sheet of a shape (S,)."""
         plan, h = self._plan, self._plan.h_count
-        given = self._given_nodes(self.positions(shape)) if self.free_rim else self._given
+        nodes = self._given_of(shape)
         x = np.power(10.0, shape[: self.voids])[plan.void]
         flat = np.zeros(2 * x.size + 1)
         np.divide(1.0, 1.0 + x, out=flat[1:-1:2])
         np.multiply(x, flat[1:-1:2], out=flat[:-1:2])
         entry, row, node = plan.to_given
-        known, each = np.zeros((x.size, 2)), flat[entry, None] * given[node]
+        known, each = np.zeros((x.size, 2)), flat[entry, None] * nodes[node]
         for axis in (0, 1):
             known[plan.resting, axis] = np.bincount(row, each[:, axis], plan.resting.size)
         at_h = plan.band.solution(plan.paths(flat), known[:h] + plan.h_on_v.times(flat, known[h:]))
-        nodes = given.copy()
         nodes[plan.free[:h]] = at_h
         nodes[plan.free[h:]] = plan.v_on_h.times(flat, at_h) + known[h:]
         return CompactLayout(shape, nodes, flat)
@@ -305,9 +382,9 @@ class OutlineModel:
         In a list of voids' pairs and mouths' couplings; with their signs, their rows, and where each column begins.
         """
         if basis not in self._patterns:
-            coupled, mouth = self._plan.known if self.free_rim else (np.zeros(0, np.intp),) * 2
+            coupled, mover = self._plan.known if self.free_rim else (np.zeros(0, np.intp),) * 2
             row = np.concatenate([*self._plan.pair, self._plan.resting[coupled]])
-            number = np.concatenate([np.arange(self.voids), np.arange(self.voids), self.voids + mouth])
+            number = np.concatenate([np.arange(self.voids), np.arange(self.voids), self.voids + mover])
             place = np.argsort(basis.variable[number], kind="stable")
             place = place[: int(np.count_nonzero(basis.variable[number] < basis.size))]
             first = np.searchsorted(basis.variable[number[place]], np.arange(basis.size + 1))
@@ -347,11 +424,11 @@ class NodeMotion:
     system : _FactoredField
     pull : (K, 2) float
         How each free node's own equation moves it per unit of its void's z.
-    along : (R, 2) float
-        How the mouths move; none where the rim is not free.
-    share : (G, R) float
-        How the given nodes follow the mouths, along each side.
-    known : (Q, R) float
+    along : (W, 2) float
+        How the mouths move, then the edge hinges where these are free; none where the rim is not free.
+    share : (G, W) float
+        How the given nodes follow them.
+    known : (Q, W) float
         What the own equations of the free nodes that rest on given ones get from them.
     """
 
@@ -465,12 +542,12 @@ class NodeMotion:
         place, sign, row, first = model._right_pattern(basis)
         values = [*self.pull[model._plan.pair, axis]]
         if len(self.along):
-            coupled, mouth = model._plan.known
-            values.append(self.known[coupled, mouth] * self.along[mouth, axis])
+            coupled, mover = model._plan.known
+            values.append(self.known[coupled, mover] * self.along[mover, axis])
         return csc_matrix((np.concatenate(values)[place] * sign, row, first), shape=(len(self.pull), basis.size))
 
     def _wide(self, by_mouths: FloatArray) -> FloatArray:
-        """Derivatives (., R) by the mouths with columns for the voids before them: (., S)."""
+        """Derivatives (., W) by mouths and edge hinges with columns for the voids before them: (., S)."""
         return np.concatenate([np.zeros((len(by_mouths), self.model.voids)), by_mouths], axis=1)
 
 

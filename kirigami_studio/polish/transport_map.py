@@ -26,9 +26,9 @@ from kirigami_studio.lattice.topology import topology
 from kirigami_studio.outlines.outline import Outline
 
 #: Points that stand for each of the two densities.
-POINTS = 600
-#: Neighbours over which the map is smoothed, by an affine fit.
-NEIGHBOURS = 16
+POINTS = 450
+#: Neighbours over which the map is smoothed, by an affine fit, and places along each side of the table of the result.
+NEIGHBOURS, TABULATED = 12, 33
 #: The plastic number's powers spread points evenly over the square (R2 sequence).
 SPREAD = np.array([0.7548776662466927, 0.5698402909980532])
 
@@ -53,9 +53,9 @@ def even_points(polygon: shapely.Polygon, count: int = POINTS) -> FloatArray:
 class TransportMap:
     """Where places of the flat sheet belong in the target."""
 
-    source: FloatArray  #: (Q, 2), unit cells; points of the flat sheet
-    image: FloatArray  #: (Q, 2), unit-area lengths; their images in the target's frame
-    _tree: KDTree
+    low: FloatArray  #: (2,), unit cells; the lower left corner of what holds the flat sheet
+    step: FloatArray  #: (2,), unit cells; from one tabulated place to the next
+    table: FloatArray  #: (T, T, 2), unit-area lengths; images of tabulated places, by x, then y, in the target's frame
 
     @classmethod
     def of(cls, sheet: Sheet, target: Outline, angle: float) -> TransportMap:
@@ -69,22 +69,40 @@ class TransportMap:
         turned = rotate((source - middle) / math.sqrt(flat.area), angle)
         points = _target_points(target)
         _, order = linear_sum_assignment(cdist(turned, points, "sqeuclidean"))
-        return cls(source, points[order], KDTree(source))
+        low, high = np.array(flat.bounds).reshape(2, 2)
+        step = (high - low) / (TABULATED - 1)
+        number = np.arange(TABULATED)
+        places = low + step * np.stack(np.meshgrid(number, number, indexing="ij"), axis=-1)
+        table = _smoothed(source, points[order], places.reshape(-1, 2))
+        return cls(low, step, table.reshape(TABULATED, TABULATED, 2))
 
     def at(self, places: FloatArray) -> FloatArray:
-        """Images (P, 2) of places (P, 2) of the flat sheet, by an affine fit to the nearest points."""
-        found = self._tree.query(places, NEIGHBOURS)
-        distance, near = np.asarray(found[0]), np.asarray(found[1])
-        weight = np.exp(-2.0 * np.square(distance / distance[:, -1:]))[..., None]
-        total = weight.sum(axis=1)
-        source, image = self.source[near], self.image[near]
-        here, there = (weight * source).sum(axis=1) / total, (weight * image).sum(axis=1) / total
-        source, image = source - here[:, None], image - there[:, None]
-        spread = np.einsum("pki,pkj->pij", weight * source, source) + 1e-9 * np.eye(2)
-        together = np.einsum("pki,pkj->pij", weight * source, image)
-        slope = np.linalg.solve(spread, together)
-        images: FloatArray = there + np.einsum("pi,pij->pj", places - here, slope)
+        """Images (P, 2) of places (P, 2) of the flat sheet, between the four that are tabulated round each."""
+        along = (places - self.low) / self.step
+        first = np.clip(along.astype(np.intp), 0, TABULATED - 2)
+        share = along - first
+        x, y = share[:, :1], share[:, 1:]
+        i, j = first.T
+        lower = (1.0 - y) * self.table[i, j] + y * self.table[i, j + 1]
+        upper = (1.0 - y) * self.table[i + 1, j] + y * self.table[i + 1, j + 1]
+        images: FloatArray = lower + x * (upper - lower)
         return images
+
+
+def _smoothed(source: FloatArray, image: FloatArray, places: FloatArray) -> FloatArray:
+    """Images (P, 2) of ``places`` (P, 2), by an affine fit to those (Q, 2) of the nearest of points (Q, 2)."""
+    found = KDTree(source).query(places, NEIGHBOURS)
+    distance, near = np.asarray(found[0]), np.asarray(found[1])
+    weight = np.exp(-2.0 * np.square(distance / distance[:, -1:]))[..., None]
+    total = weight.sum(axis=1)
+    source, image = source[near], image[near]
+    here, there = (weight * source).sum(axis=1) / total, (weight * image).sum(axis=1) / total
+    source, image = source - here[:, None], image - there[:, None]
+    spread = np.einsum("pki,pkj->pij", weight * source, source) + 1e-9 * np.eye(2)
+    together = np.einsum("pki,pkj->pij", weight * source, image)
+    slope = np.linalg.solve(spread, together)
+    images: FloatArray = there + np.einsum("pi,pij->pj", places - here, slope)
+    return images
 
 
 @lru_cache(maxsize=32)

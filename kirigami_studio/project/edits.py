@@ -339,8 +339,8 @@ def _lock_label(voids: frozenset[Void], on: bool) -> str:
     if len(voids) == 1:
         ((row, column),) = voids
         if on:
-            return tr("Lock void ({row}, {column})", row=row, column=column)
-        return tr("Unlock void ({row}, {column})", row=row, column=column)
+            return tr("Lock the void in row {row}, column {column}", row=row, column=column)
+        return tr("Unlock the void in row {row}, column {column}", row=row, column=column)
     if on:
         return tr_n("Lock {count} void", "Lock {count} voids", len(voids))
     return tr_n("Unlock {count} void", "Unlock {count} voids", len(voids))

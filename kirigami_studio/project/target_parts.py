@@ -148,6 +148,20 @@ def twins(parts: Sequence[Document]) -> tuple[int, ...]:
     )
 
 
+def for_twin(designed: Document, twin: Document) -> Document:
+    """The designs of a part as those of another one of its shape and size."""
+    return replace(designed, target=twin.target, place=twin.place, other_parts=(), part=0)
+
+
+def with_twins(document: Document, number: int) -> Document:
+    """The document with the designs of a part also in others of its shape and size that have none."""
+    designed, same = document.parts[number], twins(parts_as_cut(document))
+    for other, part in enumerate(document.parts):
+        if same[other] == same[number] and not part.candidates:
+            document = with_part(document, other, for_twin(designed, part))
+    return document
+
+
 def _alike(one: Outline | None, other: Outline | None) -> bool:
     if one is None or other is None or one is other:
         return one is other

@@ -47,7 +47,7 @@ from kirigami_studio.foundation.words import mark
 LARGEST_SHEET_MM = 10_000.0
 
 
-def _millimetres(about: str, label: str, option: str, low: float, high: float) -> Mapping[str, Setting]:
+def _millimetres(about: str, label: str, undo: str, option: str, low: float, high: float) -> Mapping[str, Setting]:
     """Describe a length of a construction."""
     setting = Setting(
         about=about,
@@ -58,7 +58,7 @@ def _millimetres(about: str, label: str, option: str, low: float, high: float) -
         least=low,
         most=high,
         code="settings.length_out_of_range",
-        undo=mark("Change the construction"),
+        undo=undo,
         step=0.1,
         unit="mm",
     )
@@ -231,7 +231,12 @@ class FabricationSettings:
     pin_mm: float | None = field(
         default=None,
         metadata=_millimetres(
-            mark("Diameter of the holes that pins turn in, mm."), mark("Pin hole, mm"), "--pin-mm", 0.5, 50.0
+            mark("Diameter of the holes that pins turn in, mm."),
+            mark("Pin hole, mm"),
+            mark("Change the pin holes"),
+            "--pin-mm",
+            0.5,
+            50.0,
         ),
     )
     ear_mm: float | None = field(
@@ -239,6 +244,7 @@ class FabricationSettings:
         metadata=_millimetres(
             mark("Diameter of the ear round each pin, mm; neighbouring pins keep further apart."),
             mark("Ear, mm"),
+            mark("Change the ears"),
             "--ear-mm",
             1.0,
             200.0,
@@ -247,7 +253,12 @@ class FabricationSettings:
     clearance_mm: float | None = field(
         default=None,
         metadata=_millimetres(
-            mark("Room between pieces that pass each other, mm."), mark("Clearance, mm"), "--clearance-mm", 0.0, 20.0
+            mark("Room between pieces that pass each other, mm."),
+            mark("Clearance, mm"),
+            mark("Change the clearance"),
+            "--clearance-mm",
+            0.0,
+            20.0,
         ),
     )
     gap_mm: float = field(
@@ -255,6 +266,7 @@ class FabricationSettings:
         metadata=_millimetres(
             mark("Tiles on a soft sheet are smaller than their panels by this much all round, mm."),
             mark("Tile gap, mm"),
+            mark("Change the gap of the tiles"),
             "--gap-mm",
             0.0,
             20.0,
@@ -314,7 +326,7 @@ class FabricationSettings:
             about=mark("The state that magnets, eyelets, stitches or tabs keep."),
             help="the state that --hold keeps",
             code="settings.no_such_choice",
-            undo=mark("Change what holds the sheet"),
+            undo=mark("Change when the sheet is held"),
             label=mark("Held when"),
             choices=(
                 Choice(HoldWhen.OPEN, mark("Open"), mark("As the target.")),
@@ -326,12 +338,24 @@ class FabricationSettings:
     )
     magnet_mm: float = field(
         default=5.0,
-        metadata=_millimetres(mark("Diameter of the disc magnets, mm."), mark("Magnet, mm"), "--magnet-mm", 1.0, 30.0),
+        metadata=_millimetres(
+            mark("Diameter of the disc magnets, mm."),
+            mark("Magnet, mm"),
+            mark("Change the magnets"),
+            "--magnet-mm",
+            1.0,
+            30.0,
+        ),
     )
     magnet_height_mm: float = field(
         default=2.0,
         metadata=_millimetres(
-            mark("Height of the disc magnets, mm."), mark("Magnet height, mm"), "--magnet-height-mm", 0.5, 20.0
+            mark("Height of the disc magnets, mm."),
+            mark("Magnet height, mm"),
+            mark("Change the height of the magnets"),
+            "--magnet-height-mm",
+            0.5,
+            20.0,
         ),
     )
     moved_by: DriveKind = field(

@@ -17,6 +17,7 @@ from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.engraving import engraved
 from kirigami_studio.fabricate.findings import Note, Severity
 from kirigami_studio.fabricate.hold import HoldKind
+from kirigami_studio.fabricate.machine import MachineKind
 from kirigami_studio.fabricate.material import Material
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import cut_table
@@ -25,15 +26,62 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.mechanics.connectors import flexure_length
+from kirigami_studio.settings.design import USUAL_GRID
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
     hold_options,
+    is_pinned,
+    machine_for,
     material_for,
     named_machine,
     stored_values,
     unlike,
 )
 from kirigami_studio.settings.layers import board_layer, hinge_layer, is_backed
+
+#: Length of the cuts of pieces on pins and of tiles, over that of plain panels: ears, holes of pins, relief.  Pieces of
+#: a heart, 8 x 8 voids and 380 mm wide, have 1.4 times as much.
+ROUND_PANELS = 1.4
+#: Panels on average that leave connectors room everywhere, in the least of one: they differ in size.
+ROOMY = 1.3
+#: Stops of the head in one cut, at its ends and where it goes round connectors.
+STOPS = 4
+
+
+def expected_seconds(settings: FabricationSettings, grid: tuple[int, int] = USUAL_GRID) -> float:
+    """Rough time of cutting a sheet before it is designed.
+
+    Returns
+    -------
+    float
+        Seconds; 0 where nothing is cut by a machine, and for an unknown material.
+    """
+    try:
+        material, machine = material_for(settings), machine_for(settings)
+    except FabricationError:
+        return 0.0
+    if machine.kind in (MachineKind.HAND, MachineKind.PRINTER):
+        return 0.0
+    rows, columns = grid
+    width, height = settings.width_mm, settings.width_mm * (rows + 1) / (columns + 1)
+    between, rim = columns * height + rows * width, 2.0 * (width + height)
+    panels = ROUND_PANELS * (2.0 * between + rim)
+    length = panels if is_pinned(settings) else between + rim + (panels if is_backed(settings) else 0.0)
+    speed, cuts = machine.speed_mm_s(material), rows * columns + 2 * (rows + columns)
+    switching = machine.on_delay_s + machine.off_delay_s + STOPS * machine.corner_delay_s
+    moving = width / columns / machine.travel_mm_s + STOPS * speed / machine.acceleration_mm_s2
+    return material.passes * (length / speed + cuts * (switching + moving))
+
+
+def least_width_mm(settings: FabricationSettings, cells: float) -> float:
+    """Least width (mm) of a sheet so many cells wide for its connectors; 0 on pins.
+
+    Raises
+    ------
+    FabricationError
+        No such material.
+    """
+    return 0.0 if is_pinned(settings) else ROOMY * room_mm(settings) * cells
 
 
 def plan_of(

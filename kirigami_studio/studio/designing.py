@@ -7,6 +7,7 @@ designs are ranked by how they do as cut, and what project they make.
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
@@ -31,7 +32,15 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, TURNS_BACK, StartShape, hollows
 from kirigami_studio.outlines.turning import sides_needed, turn_back
 from kirigami_studio.pipeline.best_as_cut import Looking, best_as_cut
-from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Event, Finished, Progress, Result
+from kirigami_studio.pipeline.events import (
+    CandidateFound,
+    CandidateImproved,
+    Event,
+    Finished,
+    Phase,
+    Progress,
+    Result,
+)
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request, provenance
@@ -41,10 +50,11 @@ from kirigami_studio.polish.pinwheel import gap_in_cells
 from kirigami_studio.project.candidate_edits import NewDesigns, renew_candidates
 from kirigami_studio.project.document import Document, Void
 from kirigami_studio.settings.design import DesignSettings
-from kirigami_studio.settings.fabrication import FabricationSettings, is_printed, material_for, pin_gap_mm
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned, is_printed, material_for, pin_gap_mm
 from kirigami_studio.settings.layers import hinge_layer
 from kirigami_studio.studio import importing
 from kirigami_studio.studio.cutting import least_feature_mm, room_mm, span_mm
+from kirigami_studio.studio.run_progress import RunProgress
 
 if TYPE_CHECKING:
     from kirigami_studio.studio.as_cut import AsCut
@@ -143,14 +153,24 @@ class StartChosen:
     reason: str
 
 
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A design that a run has looked at closely."""
+
+    candidate: Candidate
+    refusal: Note | None  #: why it cannot be cut
+    loss: float  #: worth (IoU) that it loses by being cut
+    as_cut: AsCut | None  #: how it does as cut; None where nobody had to look
+
+
 #: Covers of pinned sheets are made where no pieces match better than this.
 COVERED_PIECES_BELOW = 0.95
 #: How often other designs are trimmed, where none that is trimmed can be cut.
 TRIMMED_FURTHER = 2
 #: What a run reports.
-RunReport = Event | ModelFound | GridChosen | StartChosen | Decoded
+RunReport = Event | ModelFound | GridChosen | StartChosen | Decoded | Judged
 #: What fitting designs again reports.
-RefitReport = Decoded | FittedAgain | Progress | KnownAsCut
+RefitReport = Decoded | FittedAgain | Progress | Judged | KnownAsCut
 #: Gets how far a run has come.
 Tell = Callable[[Progress], object]
 
@@ -201,7 +221,7 @@ def run_design(
     beside: tuple[Candidate, ...] = (),
     only_new: bool = False,
     pool: Pool | None = None,
-) -> Iterator[Event | GridChosen | StartChosen]:
+) -> Iterator[Event | GridChosen | StartChosen | Judged]:
     """Choose the grid, run, and rank by how designs do as cut: the best that can be cut in this material first.
 
     Parameters
@@ -219,36 +239,49 @@ def run_design(
 
     Yields
     ------
-    Event, GridChosen or StartChosen
-        Those of the pipeline, what was left to the run first, and at last ``Finished``.
+    Event, GridChosen, StartChosen or Judged
+        Those of the pipeline, what was left to the run first, designs as they are judged, and at last ``Finished``;
+        progress is that of the whole run.
 
     Raises
     ------
     Cancelled
         ``cancel`` returned true.
     """
-    from kirigami_studio.pipeline.run import (
-        covered_on_pins,
-        grid_choice,
-        run,
-        start_choice,
-        trimmed_further,
-        with_grid,
-    )
+    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, with_grid
 
     if request.start.is_auto and request.near is None:
+        yield Progress(0, request.k, tr("Choosing the start"))
         chosen = start_choice(request)
         yield StartChosen(chosen.start, chosen.reason)
         request = request.with_start(chosen.start)
     if request.grid is None and request.near is None:
+        yield Progress(0, request.k, tr("Choosing the grid"))
         choice = grid_choice(request)
         yield GridChosen(choice.grid, choice.reason)
     request = _with_sizes(with_grid(request), cut, least_panel_mm)
-    for event in run(request, cancel, pool):
+    whole = RunProgress(request)
+    for event in _whole_run(run(request, cancel, pool), request, cut, beside, only_new, cancel, pool):
+        yield whole.placed(event) if isinstance(event, Progress) else event
+
+
+def _whole_run(
+    designing: Iterator[Event],
+    request: Request,
+    cut: FabricationSettings,
+    beside: tuple[Candidate, ...],
+    only_new: bool,
+    cancel: Cancel,
+    pool: Pool | None,
+) -> Iterator[Event | Judged]:
+    """Designs, ranked as cut, and what follows from that."""
+    from kirigami_studio.pipeline.run import covered_on_pins, trimmed_further
+
+    for event in designing:
         if not isinstance(event, Finished):
             yield event
             continue
-        result = event.result
+        result, began = event.result, time.perf_counter()
         if only_new:
             # Comparing a thousand designs with a thousand takes a second.
             new = distinct(result.candidates, beside)
@@ -262,7 +295,7 @@ def run_design(
         if wants_covers_on_pins(result):
             result = yield from covered_on_pins(result, cancel, pool)
             result = yield from ranked_as_cut(result, cut, beside, cancel)
-        yield Finished(result)
+        yield Finished(replace(result, judging_seconds=time.perf_counter() - began))
 
 
 def wants_covers_on_pins(result: Result) -> bool:
@@ -334,7 +367,7 @@ def limit_of(document: Document) -> Note | None:
     Pieces on pins are extended beyond their sheet, so what that cannot show says nothing of them.
     """
     opens = not document.candidates and document.settings.phi > CLOSED
-    if opens or pin_gap_mm(document.fabrication):
+    if opens or is_pinned(document.fabrication):
         return None
     return _said(document.candidates, document.target, document.settings.start)
 
@@ -412,14 +445,14 @@ def completed(run: Iterator[object], tell: Tell) -> Result:
 
 def ranked_as_cut(
     result: Result, cut: FabricationSettings, beside: tuple[Candidate, ...], cancel: Cancel
-) -> Generator[Progress, None, Result]:
+) -> Generator[Progress | Judged, None, Result]:
     """Rank designs with those beside them; reports between the steps of every look, for others to have their turn."""
     from kirigami_studio.studio.as_cut import estimates
     from kirigami_studio.studio.verdict import CloseLook, looking
 
     target = result.request.target
     everything = replace(result, candidates=(*beside, *result.candidates))
-    progress = _looking_at(0, len(everything.candidates))
+    progress = Progress(0, len(everything.candidates), tr("Checking designs as cut"), Phase.JUDGING)
     known: dict[Candidate, AsCut] = {}
     for start in range(0, len(everything.candidates), ESTIMATED_AT_ONCE):
         with one_blas_thread():
@@ -427,10 +460,13 @@ def ranked_as_cut(
         yield progress
     jams = {one: as_cut.jam_phi for one, as_cut in known.items()}
 
+    looked: list[Judged] = []
+
     def look(one: Candidate) -> Generator[None, None, CloseLook]:
         found = yield from looking(one, cut, target, cancel)
         if found.as_cut is not None:
             known[one] = found.as_cut  # a simulation takes the place of the estimate
+        looked.append(Judged(one, found.refusal, found.loss, found.as_cut))
         return found
 
     steps = best_as_cut(everything, jams, look)
@@ -440,16 +476,19 @@ def ranked_as_cut(
         except StopIteration as end:
             found: Result = end.value
             break
+        yield from looked
+        looked.clear()
         if isinstance(step, Looking):
             progress = _looking_at(step.number, step.total)
         yield progress
+    yield from looked
     stay = {id(one) for one in beside}
     return replace(found, candidates=tuple(one for one in found.candidates if id(one) not in stay), as_cut=known)
 
 
 def _looking_at(number: int, total: int) -> Progress:
-    message = tr("Looking for a design that can be cut: {number} of {total}", number=number, total=total)
-    return Progress(number, total, message)
+    message = tr("Checking: {number} of {total}", number=number, total=total)
+    return Progress(number - 1, total, message, Phase.JUDGING)
 
 
 def _with_sizes(request: Request, cut: FabricationSettings, least_panel_mm: float) -> Request:

@@ -12,9 +12,9 @@ import shapely
 from numpy.typing import NDArray
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.foundation.errors import KirigamiError, TargetError
 from kirigami_studio.foundation.steps import Cancel
-from kirigami_studio.outlines.merging import Merged, Merging, merged
+from kirigami_studio.outlines.merging import Join, Merged, Merging, merged
 from kirigami_studio.outlines.parts import SourceParts, Strokes
 from kirigami_studio.outlines.read import has_parts, is_picture, read_parts, read_target
 from kirigami_studio.outlines.starts import StartShape, outline_start
@@ -23,6 +23,8 @@ from kirigami_studio.studio.targets import TargetRead, design_of, reading_target
 
 #: Deviation of drawn parts from the true ones, share of the drawing's size: less than a pixel.
 DRAWN = 1.0 / 3000.0
+#: Share of its convex hull from which on painted strokes surround an area, and are not only lines.
+MOST_OF_HULL = 0.5
 
 
 class Purpose(Enum):
@@ -53,6 +55,8 @@ class PartsRead:
     #: fewer vertices than the part itself.
     sketches: tuple[tuple[FloatArray, ...], ...]
     photo: Photo | None = None  #: the picture that holds them; None for drawings
+    #: How all parts but letters become the silhouette of strokes, where that is meant; None where the usual one is.
+    strokes: Merging | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -161,6 +165,24 @@ def places_in(read: PartsRead, numbers: frozenset[int]) -> tuple[tuple[float, fl
     return tuple((point.x, height - point.y) for point in inside)
 
 
+def silhouette_of_strokes(source: SourceParts) -> Merging | None:
+    """Way to join strokes that stand open around everything that is closed.
+
+    A house of open lines is not its window.
+    """
+    if source.choice.open_at is None or not any(part.is_closed for part in source.parts):
+        return None
+    merging = Merging(Join.BRIDGE, as_painted=True)
+    inside = shapely.union_all([part.region for part in source.parts if part.is_closed])
+    try:
+        shape = merged(source, [part for part in source.parts if not part.is_letter], merging).shape
+    except TargetError:
+        return None
+    around = shapely.Polygon(shape.exterior)
+    encloses = around.contains(inside) and around.area > MOST_OF_HULL * around.convex_hull.area
+    return merging if encloses else Merging(Join.TIGHT, as_painted=True)
+
+
 def sketched(source: SourceParts) -> PartsRead:
     """The parts with what is drawn of them."""
     tolerance = DRAWN * source.size
@@ -172,7 +194,7 @@ def sketched(source: SourceParts) -> PartsRead:
         else:
             lines = [shapely.linestrings(line) for line in part.lines]
             sketches.append(tuple(shapely.get_coordinates(shapely.simplify(line, tolerance)) for line in lines))
-    return PartsRead(source, tuple(sketches))
+    return PartsRead(source, tuple(sketches), strokes=silhouette_of_strokes(source))
 
 
 def merging_parts(source: SourceParts, numbers: frozenset[int], merging: Merging, cancel: Cancel) -> Iterator[Merged]:

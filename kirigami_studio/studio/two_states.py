@@ -114,6 +114,12 @@ class State:
     size_mm: tuple[float, float]  #: (width, height), mm; of the flat sheet; of the target as the opened sheet shows it
     #: 0..1, or None; IoU of the sheet with that outline; None where the sheet is trimmed: its edge is cut off.
     match: float | None
+    is_flat: bool = False  #: whether it is the flat sheet
+
+    @property
+    def named(self) -> str:
+        """Its name after the word for its end of the motion."""
+        return tr("flat: {name}", name=self.name) if self.is_flat else tr("open: {name}", name=self.name)
 
     @property
     def size_text(self) -> str:
@@ -124,15 +130,17 @@ class State:
         """What is known of it, longest text first."""
         if self.match is None:
             return (
-                tr("{name}  ·  {size}  ·  trimmed", name=self.name, size=self.size_text),
-                tr("{name}  ·  {size}", name=self.name, size=self.size_text),
+                tr("{name}  ·  {size}  ·  trimmed", name=self.named, size=self.size_text),
+                tr("{name}  ·  {size}", name=self.named, size=self.size_text),
+                self.named,
                 self.name,
             )
         percent = 100.0 * self.match
         return (
-            tr("{name}  ·  {size}  ·  match {percent:.1f} %", name=self.name, size=self.size_text, percent=percent),
-            tr("{name}  ·  {size}  ·  {percent:.1f} %", name=self.name, size=self.size_text, percent=percent),
-            tr("{name} {percent:.1f} %", name=self.name, percent=percent),
+            tr("{name}  ·  {size}  ·  match {percent:.1f} %", name=self.named, size=self.size_text, percent=percent),
+            tr("{name}  ·  {size}  ·  {percent:.1f} %", name=self.named, size=self.size_text, percent=percent),
+            tr("{name} {percent:.1f} %", name=self.named, percent=percent),
+            self.named,
             self.name,
         )
 
@@ -207,7 +215,7 @@ class TwoStates:
         flat = flat_size(deployment, width_mm)
         opened = opened_size(deployment, design.pose, target, width_mm).opened
         return cls(
-            State(start_of(candidate), outline, flat, shown_flat_match(candidate, as_cut)),
+            State(start_of(candidate), outline, flat, shown_flat_match(candidate, as_cut), is_flat=True),
             State(tr(target.name), target.rings, opened, shown_match(candidate, as_cut)),
             candidate.final_phi,
             None if candidate.second is None else PassedState.of(candidate, candidate.second, width_mm),

@@ -9,6 +9,7 @@ import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
+from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lattice.deployment import deploy
@@ -16,7 +17,9 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project import edits
+from kirigami_studio.project.document import Document
 from kirigami_studio.studio.designing import limit_of
 
 Until = Callable[[Callable[[], bool]], None]
@@ -58,3 +61,14 @@ def test_that_designs_say_it_with_the_most_that_was_found(window: MainWindow, ke
     assert told(window) == [note.text] * 3
     session.apply(edits.set_target(session.document, load("heart")))
     assert window.gallery.why.text() == "" and not window.target.limit.isVisible()
+
+
+def test_that_why_holes_stay_filled_stands_above_the_cards(
+    designed: MainWindow, designs: Document, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before, it stood in the tooltip of a card alone."""
+    assert designed.gallery.why.text() == ""
+    why = Note.of("rank.holes_filled", why="panels would touch.")
+    monkeypatch.setattr(Ranking, "why_filled", lambda ranking, ranked: why if ranked == designs.candidates else None)
+    designed.presenters.designs.show_document(designed.session.document)
+    assert designed.gallery.why.text() == why.text and designed.gallery.why.isVisible()

@@ -11,7 +11,7 @@ import pytest
 from ezdxf.math import Vec3
 from ezdxf.path import make_path
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QApplication, QLabel, QWidget
+from PySide6.QtWidgets import QApplication, QCheckBox, QComboBox, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.session.messages import Tone
@@ -119,6 +119,29 @@ def test_that_undo_names_the_material_that_was_changed(designed: MainWindow) -> 
     box.activated.emit(other)
     assert designed.session.document.fabrication.material == box.itemData(other)
     assert designed.session.history.undo_label == "Change the material"
+
+
+def test_that_undo_names_each_setting_that_a_form_changes(designed: MainWindow) -> None:
+    panel, history = designed.fabrication, designed.session.history
+    changed = {}
+    for form in (panel.form, panel.options.cuts, panel.options.files):
+        for name, field in form.fields.items():
+            before = history.position
+            if isinstance(field, QComboBox):
+                other = next((row for row in range(field.count()) if row != field.currentIndex()), None)
+                if other is None:
+                    continue
+                field.setCurrentIndex(other)
+                field.activated.emit(other)
+            elif isinstance(field, QCheckBox):
+                field.toggle()
+            else:
+                field.setValue(field.value() + field.singleStep())
+            assert history.position == before + 1, name
+            changed[name] = history.undo_label
+            designed.commands["undo"].trigger()
+    assert len(changed) > 15 and len(set(changed.values())) == len(changed), changed
+    assert changed["connector_mm"] == "Change the connector width"
 
 
 def test_that_the_summary_no_longer_says_trimmed_once_the_trim_is_off(designed: MainWindow, until: Until) -> None:

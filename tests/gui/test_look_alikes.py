@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from kirigami_studio.gui.gallery.gallery_model import ALIKE_ROLE, OPEN_ROLE, Gal
 from kirigami_studio.gui.gallery.gallery_selection import SortOrder
 from kirigami_studio.gui.run import look_alikes
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -138,6 +140,43 @@ def test_that_grouping_can_be_switched_off_and_keeps_to_any_order(stacked: MainW
     assert values == sorted(values)
     bar.filters.grouped.setChecked(True)
     assert len(shown(stacked)) == 3
+
+
+def test_that_card_header_and_exported_file_are_of_one_design_whatever_the_order_and_the_groups(
+    stacked: MainWindow, files: object, until: Until, tmp_path: Path
+) -> None:
+    window, model, bar = stacked, stacked.gallery.view.model_, stacked.gallery.bar
+    hidden = next(one for one in window.session.document.candidates if model.row_of(one) < 0)
+    window.services.chosen.choose(hidden)
+    label = window.session.document.label_of(hidden)
+    assert label is not None
+
+    def agree() -> None:
+        card = model.index(window.gallery.view.currentIndex().row(), 0)
+        assert model.entries[card.row()].candidate == hidden == window.session.document.candidate
+        assert str(card.data(Qt.ItemDataRole.AccessibleTextRole)).startswith(f"Design {label.text}: ")
+        assert window.session.stage is not None and window.session.stage.candidate == hidden
+        assert window.stage.title.text() == f"Design {label.text}"
+
+    agree()
+    for order in (SortOrder.PANEL, SortOrder.MATCH, SortOrder.RANK):
+        bar.order.setCurrentIndex(bar.order.findData(order))
+        bar.order.activated.emit(bar.order.currentIndex())
+        agree()
+    for grouped in (False, True):
+        bar.filters.grouped.setChecked(grouped)
+        agree()
+    for page in (WindowPage.MAKE, WindowPage.DESIGN):
+        window.pages.turn(page)
+        agree()
+    until(window.fabrication.export.isEnabled)
+    files.answer = tmp_path / "cut.dxf"  # type: ignore[attr-defined]
+    window.commands["export"].trigger()
+    until(lambda: window.dialogs.report is not None)
+    assert files.proposals[-1].endswith(f"-{label.text}.dxf")  # type: ignore[attr-defined]
+    window.services.project.open(tmp_path / "cut.dxf")  # which holds the one design that it was made of
+    until(lambda: len(window.session.document.candidates) == 1)
+    assert window.session.document.candidates[0].sheet.field == hidden.sheet.field
 
 
 def test_that_designs_join_their_stack_while_they_arrive(

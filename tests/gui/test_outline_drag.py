@@ -140,7 +140,7 @@ def test_that_what_the_hand_does_meanwhile_comes_after_in_its_order(large: MainW
     let_go(large, place)
     assert seen(large) == before.sheet.field
     settle(large, until)
-    assert history.steps == (LABEL, f"Change ratio of void {void}", LABEL)
+    assert history.steps == (LABEL, "Change ratio of the void in row {}, column {}".format(*void), LABEL)
     assert chosen(large).sheet.field == seen(large)
     history.go_to(1)
     first = chosen(large).sheet.field.ratio

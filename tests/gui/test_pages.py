@@ -25,6 +25,7 @@ from kirigami_studio.gui.widgets.theme import LIGHT
 from kirigami_studio.gui.window.application import create_window
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.pages import WindowPage
+from kirigami_studio.studio.cutting import expected_seconds
 
 Until = Callable[[Callable[[], bool]], None]
 LEFT = Qt.MouseButton.LeftButton
@@ -291,3 +292,67 @@ def test_that_one_switch_shows_and_reads_inches_in_all_fields(designed: MainWind
         assert flat.value() == pytest.approx(millimetres)
     designed.commands["inches"].trigger()
     assert (connector.text(), width.text().endswith(" mm")) == (plain[0], True)
+
+
+def test_that_a_note_that_undo_answers_too_goes_by_itself_and_a_question_stays(designed: MainWindow) -> None:
+    """Before, the note on designs of an old target lay over the header until it was closed."""
+    bar = designed.messages
+    bar.dismiss(*Tone)
+    designed.services.targeting.clear()
+    (said,) = [one for one in bar.messages if one.actions]
+    assert said.passing and bar._fading.isActive()
+    designed.services.project.undo()
+    bar.add(Message("Keep these designs?", actions=(("Keep", lambda: None),)))
+    assert not bar._fading.isActive()
+
+
+def test_that_the_slider_stays_where_it_is_when_designs_and_their_verdict_come(
+    heart: MainWindow, project_file: Path, until: Callable[[Callable[[], bool]], None]
+) -> None:
+    """Before, the first design moved it by the line below it, and the first verdict by 60 pixels more."""
+    heart.resize(1440, 900)
+    QApplication.processEvents()
+    slider, verdict = heart.stage.deployment.slider, heart.services.verdict
+    before = slider.mapTo(heart, QPoint(0, 0)).y()
+    heart.services.project.open(project_file)
+    until(lambda: heart.session.stage is not None and verdict.state.known)
+    QApplication.processEvents()
+    assert heart.stage.verdict.isVisible() and slider.mapTo(heart, QPoint(0, 0)).y() == before
+
+
+def test_that_a_run_is_offered_on_the_page_make_where_there_is_nothing_to_cut(
+    heart: MainWindow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before, the page asked for a button that it did not have."""
+    heart.pages.turn(WindowPage.MAKE)
+    button, begun = heart.cuts.generate, []
+    assert button.isVisible()
+    monkeypatch.setattr(type(heart.services.run), "start", lambda *_: begun.append("run"))
+    button.click()
+    assert begun == ["run"]
+    heart.services.targeting.clear()
+    assert not button.isVisible()
+
+
+def test_that_hours_of_cutting_are_told_before_the_run(heart: MainWindow) -> None:
+    """Before, a laser of 10 W that takes hours for plywood said so after the run."""
+    services, label = heart.services, heart.target.cutting
+    assert label.isHidden(), "film takes minutes"
+    services.fabrication.change(machine="diode-10w", material="plywood-co2", width_mm=380.0)
+    expected = expected_seconds(services.session.document.fabrication)
+    assert 5.0 < expected / 3600.0 < 10.0 and not label.isHidden() and label.toolTip()
+    services.fabrication.change(width_mm=60.0)
+    assert label.isHidden()
+
+
+def test_that_a_size_too_small_for_the_connectors_is_told_before_the_run(heart: MainWindow) -> None:
+    """Before, a logo of 92 mm in card was refused after the run: its sheet was to be made 1.6 times wider."""
+    services, label = heart.services, heart.target.cutting
+    services.settings.change(auto_grid=False)
+    services.settings.change(grid=(16, 13))
+    services.fabrication.change(machine="cricut-explore", material="card-co2", width_mm=64.8)
+    assert not label.isHidden() and "1" in label.toolTip() and str(16) in label.toolTip()
+    services.fabrication.change(width_mm=160.0)
+    assert label.isHidden()
+    services.settings.change(grid=(60, 60))
+    assert not label.isHidden(), "it follows the grid"

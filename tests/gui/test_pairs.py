@@ -33,7 +33,7 @@ def test_that_a_pair_opens_with_start_target_and_a_design_that_moves(window: Mai
     document = session.document
     assert document.target is not None
     assert (document.settings.start.name, document.target.name) == ("circle", "heart")
-    assert window.target.start.name == "circle" and window.stage.ends.start.accessibleName().startswith("circle")
+    assert window.target.start.name == "circle" and window.stage.ends.start.accessibleName().startswith("flat: circle")
     assert session.path is None and not session.history.unsaved  # saved elsewhere, if at all
     assert window.run.generate.isEnabled() and window.stage.deployment.slider.isEnabled()
     until(lambda: window.fabrication.export.isEnabled())

@@ -149,6 +149,25 @@ def test_that_return_takes_what_is_checked_as_one_step(window, picker, until) ->
     assert window.session.document.target is None
 
 
+def test_that_a_drawing_whose_parts_have_no_names_gives_target_and_files_its_own(
+    window: MainWindow, files: object, until: Until, tmp_path: Path
+) -> None:
+    body = '<circle cx="30" cy="40" r="20"/><rect x="60" y="25" width="30" height="30"/>'
+    for parts in (1, 2):
+        window.files.open(str(written(tmp_path, body, "badge.svg")))
+        asked = opened(window, until)
+        if parts == 2:
+            asked.all.click()
+            settled(asked, until)
+        before = window.session.document.target
+        asked.take.click()
+        until(lambda: window.session.document.target is not before)  # noqa: B023 - called at once
+        target = window.session.document.target
+        assert target is not None and target.name == "badge", parts
+        window.commands["save_as"].trigger()
+        assert files.proposals[-1].startswith("badge")  # type: ignore[attr-defined]
+
+
 def test_that_a_click_in_the_picture_takes_a_part_in_and_bridges_it(window, picker, until) -> None:
     click_part(picker, 75, -40)
     settled(picker, until)
@@ -398,3 +417,18 @@ def test_that_a_click_on_what_is_chosen_takes_the_object_there_and_leaves_nothin
     click_photo(picker, until, middle.x, 300.0 - middle.y, Qt.MouseButton.LeftButton)
     assert len(picker.chosen) == 1 and picker._read.photo is not None and picker._read.photo.strokes.taken
     assert min(made_size(picker)) > 50 and picker.take.isEnabled()
+
+
+@pytest.mark.parametrize("gap", [0.0, 6.0])
+def test_that_a_house_of_open_strokes_is_offered_and_not_its_window(
+    window: MainWindow, tmp_path: Path, until: Until, gap: float
+) -> None:
+    """Before, the one closed contour was checked: the window."""
+    walls = f'<path d="M18 {45 + gap} V88"/><path d="M82 {45 + gap} V88"/><path d="M18 88 H82"/>'
+    house = f'<path d="M10 50 L50 15 L90 50"/>{walls}<rect x="40" y="62" width="16" height="14"/>'
+    window.files.open(str(written(tmp_path, f'<g fill="none" stroke="#000" stroke-width="2">{house}</g>')))
+    picker = opened(window, until)
+    width, height = told(picker)
+    assert width > 75.0 and height > 70.0, "the whole house"
+    assert picker.painted.isChecked() and len(picker.chosen) == len(picker._read.source.parts)
+    assert picker.result_ is not None and picker.result_.shape.area > 3000.0, "its inside too, not its lines alone"

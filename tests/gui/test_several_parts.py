@@ -15,6 +15,7 @@ from kirigami_studio.gui.session.messages import Tone
 from kirigami_studio.gui.target.part_picker import PartPicker
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.merging import Join
+from kirigami_studio.pipeline.events import Result
 from kirigami_studio.project import edits
 from kirigami_studio.project.sheet_size import size_of
 from kirigami_studio.project.target_parts import parts_as_cut
@@ -140,6 +141,27 @@ def test_that_one_press_designs_every_part_and_one_export_cuts_them_all(
 
 
 @pytest.mark.torch
+@pytest.mark.parametrize("kind", ["png", "gif", "html"])
+def test_that_a_picture_from_the_window_shows_all_parts(
+    both: MainWindow, tmp_path: Path, until: Until, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    shown: list[int] = []
+    module = {"png": "picture", "gif": "animation", "html": "share_page"}[kind]
+    name = {"png": "png", "gif": "animation", "html": "page"}[kind]
+    monkeypatch.setattr(
+        f"kirigami_studio.export.{module}.write_parts_{name}",
+        lambda parts, path: (shown.append(len(parts)), path.write_bytes(b"-")),
+    )
+    found = list[ExportedFiles]()
+    both.services.exporter.exported.connect(found.append)
+    until(lambda: both.fabrication.export.isEnabled())
+    both.services.exporter.export(tmp_path / f"letter.{kind}")
+    until(lambda: bool(found))
+    assert shown == [2] and found[0].files == (tmp_path / f"letter.{kind}",)
+    assert both.messages.messages[-1].tone is Tone.DONE
+
+
+@pytest.mark.torch
 def test_that_generate_again_is_for_the_part_that_is_shown_alone(both: MainWindow, until: Until) -> None:
     session = both.session
     before = session.document.parts
@@ -162,3 +184,30 @@ def test_that_a_stopped_run_leaves_the_other_parts_for_the_next_one(taken: MainW
     assert not taken.services.run.running and session.document.part == 0
     assert not any(part.candidates for part in session.document.parts)
     assert taken.pages.parts.isEnabled()
+
+
+@pytest.mark.torch
+def test_that_parts_of_one_shape_and_size_are_designed_once(window: MainWindow, tmp_path: Path, until: Until) -> None:
+    dots = "".join(f'<rect id="d{at}" x="{20 * at}" y="0" width="12" height="12"/>' for at in range(3))
+    path = tmp_path / "dots.svg"
+    size = 'width="60mm" height="12mm" viewBox="0 0 60 12"'
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{dots}</svg>', encoding="utf-8")
+    window.files.open(str(path))
+    picker = picker_of(window, until)
+    picker.all.click()
+    picker.join.choose(Join.EACH)
+    until(lambda: not picker._job.busy)
+    picker.take.click()
+    session, runs = window.session, list[Result]()
+    until(lambda: len(session.document.parts) == 3)
+    settings = DesignSettings((3, 3), auto_grid=False, k=2, polish=0, search=0)
+    session.apply(edits.Edit("", replace(session.document, settings=settings)))
+    window.services.generation.run.completed.connect(lambda result, _: runs.append(result))
+    window.run.generate.click()
+    until(lambda: not window.services.run.running and all(part.candidates for part in session.document.parts))
+    assert len(runs) == 1 and session.document.part == 0
+    assert {part.candidates for part in session.document.parts} == {session.document.candidates}
+    assert [part.target.name for part in session.document.parts if part.target] == ["d0", "d1", "d2"]
+    # One step back, and none of them has designs.
+    window.services.project.undo()
+    assert not any(part.candidates for part in session.document.parts)

@@ -8,13 +8,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from paint_counter import PaintCounter
-from PySide6.QtCore import QPoint, QPointF, Qt
-from PySide6.QtGui import QWheelEvent
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
+from PySide6.QtGui import QPainter, QPainterPath, QPixmap, QWheelEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.session.overlays import Overlay
 from kirigami_studio.gui.stage.deployment_bar import phase_of, phi_at
+from kirigami_studio.gui.stage.layout_labels import paint_dimension
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
 
@@ -144,3 +145,19 @@ def test_that_the_theme_changes_every_drawing(designed: MainWindow) -> None:
         assert light.pixelColor(spot) != dark.pixelColor(spot)
     designed.commands["theme"].trigger()
     assert designed.appearance.palette is LIGHT
+
+
+@pytest.mark.parametrize(("place", "is_near"), [((290.0, 150.0), True), ((200.0, 200.0), False)])
+def test_that_a_length_is_written_off_the_shape_where_there_is_room_nearby(
+    qtbot: QtBot, place: tuple[float, float], is_near: bool
+) -> None:
+    """Before, the label of the greatest distance lay over the drawing, or in a hole of it."""
+    picture, shape, occupied = QPixmap(400, 400), QPainterPath(), list[QRectF]()
+    shape.addRect(QRectF(100.0, 100.0, 200.0, 200.0))
+    painter = QPainter(picture)
+    ends = np.array([place, (place[0] + 8.0, place[1])])
+    box = paint_dimension(painter, ends, "12.95 mm", LIGHT, occupied, shape)
+    painter.end()
+    assert box is not None and occupied == [box]
+    assert shape.intersects(box) is not is_near
+    assert math.dist((box.center().x(), box.center().y()), place) < 120.0

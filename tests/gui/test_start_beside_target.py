@@ -217,11 +217,11 @@ def test_that_the_ends_of_the_slider_name_both_states_with_size_and_match(
     match = 100.0 * flat.intersection(disk).area / flat.union(disk).area
     low_x, low_y, high_x, high_y = flat.bounds
     height = 100.0 * (high_y - low_y) / (high_x - low_x)
-    assert ends.start.drawn_text() == f"circle  ·  100 {TIMES} {height:.0f} mm  ·  match {match:.1f} %"
+    assert ends.start.drawn_text() == f"flat: circle  ·  100 {TIMES} {height:.0f} mm  ·  match {match:.1f} %"
     opened = np.ptp(deployment.nodes(0.0), axis=0) * 100.0 / (high_x - low_x)
     said = ends.target.accessibleName()
-    assert said.startswith("heart") and said.endswith(f"match {100 * score.iou_exact:.1f} %")
-    width_mm = float(said.split()[2])
+    assert said.startswith("open: heart") and said.endswith(f"match {100 * score.iou_exact:.1f} %")
+    width_mm = float(said.split()[3])
     assert width_mm == pytest.approx(opened[0], rel=0.15)  # the heart's, which an unfitted sheet is near to
     assert "circle 9" in window.facts.text()
 
@@ -242,7 +242,7 @@ def test_that_a_design_keeps_its_own_start_whatever_the_settings_say(
     assert window.target.start.name == "hexagon"  # of the next run
     for place, name in enumerate(("circle", "rectangle")):
         services.chosen.choose(of_two_starts.candidates[place])
-        assert window.stage.ends.start.accessibleName().startswith(f"{name}  ·  ")
+        assert window.stage.ends.start.accessibleName().startswith(f"flat: {name}  ·  ")
         row = model.index(model.row_of(of_two_starts.candidates[place]), 0)
         assert row.data(START_ROLE) == name
         assert f"Flat: {name}, 100 {TIMES} " in row.data(Qt.ItemDataRole.ToolTipRole)
@@ -288,7 +288,7 @@ def test_that_a_pinned_design_keeps_its_start_beside_those_of_the_next_run(heart
     names = [model.index(row, 0).data(START_ROLE) for row in range(len(model.entries))]
     assert sorted(names) == ["circle", "hexagon", "hexagon"]
     services.chosen.choose(pinned)
-    assert heart.stage.ends.start.accessibleName().startswith("circle  ·  ")
+    assert heart.stage.ends.start.accessibleName().startswith("flat: circle  ·  ")
     assert heart.target.start.name == "hexagon"
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSignalBlocker, Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
@@ -78,9 +78,23 @@ def test_that_all_that_is_pressed_on_the_pages_is_32_pixels_at_least(designed: M
         designed.target.set_tool(tool)
         settle()
         assert small(designed.target) == [], tool
-    designed.commands["compare"].trigger()
+    for command in ("compare", "all_designs"):
+        designed.commands[command].trigger()
+        settle()
+        assert small(designed) == [], command
+
+
+def test_that_tabs_of_parts_are_as_large_and_reached_by_keys(designed: MainWindow) -> None:
+    bar = designed.pages.parts
+    with QSignalBlocker(bar):
+        for name in ("i", "stem"):
+            bar.addTab(name)
+    bar.show()
     settle()
-    assert small(designed) == []
+    for tab in range(bar.count()):
+        box = bar.tabRect(tab)
+        assert min(box.width(), box.height()) >= TOUCH, box
+    assert bar.focusPolicy() & Qt.FocusPolicy.TabFocus and bar.accessibleName()
 
 
 def test_that_starts_second_targets_and_questions_are_pressed_as_easily(designed: MainWindow, until: Until) -> None:

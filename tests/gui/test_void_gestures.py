@@ -43,9 +43,9 @@ def test_that_pointing_at_a_void_tells_its_facts_even_outside_the_mode(designed:
     width = designed.session.document.fabrication.width_mm
     corners = deploy(chosen(designed).sheet.field).voids(OPEN)[1, 2] * width / 6
     edge = np.hypot(*(corners[1] - corners[0]))
-    assert designed.status_text.text().startswith(f"Void (1, 2): ratio x {x:.3f}, angle 80.0° at its left corner")
+    assert designed.status_text.text().startswith(f"Void in row 1, column 2: ratio x {x:.3f}, angle 80.0°")
     assert f"{edge:.2f}" in designed.status_text.text() and "locked" not in designed.status_text.text()
-    assert view.voids.lines[0] == f"Void (1, 2)   x {x:.3f}"
+    assert view.voids.lines[0] == f"Row 1, column 2   x {x:.3f}"
     QTest.mouseMove(view, QPoint(3, 3))
     assert view.voids.void is None and designed.status_text.text() == before
 
@@ -72,7 +72,7 @@ def test_that_the_wheel_over_a_void_changes_its_ratio_in_one_undo_step(by_hand: 
     assert chosen(by_hand) == before  # the document waits for the score
     settle(by_hand, until)
     after = chosen(by_hand)
-    assert history.undo_label == "Change ratio of void (1, 2)"
+    assert history.undo_label == "Change ratio of the void in row 1, column 2"
     assert after.sheet.field.ratio[1, 2] == seen and after.origin is Origin.EDITED and not after.polished
     others = np.ones((4, 5), dtype=bool)
     others[1, 2] = False
@@ -94,13 +94,13 @@ def test_that_notches_on_one_void_that_follow_soon_are_one_step_though_each_is_s
     for notches in (1, 1, -3):
         turn(view, middle_of(view, (1, 2)), notches)
         settle(by_hand, until)
-        assert history.steps == ("Change ratio of void (1, 2)",)
+        assert history.steps == ("Change ratio of the void in row 1, column 2",)
     assert ratio(by_hand, (1, 2)) == pytest.approx(before.sheet.field.ratio[1, 2] / 1.05, rel=2e-3)
     turn(view, middle_of(view, (2, 2)), 1)
     settle(by_hand, until)
     turn(view, middle_of(view, (1, 2)), 1)
     settle(by_hand, until)
-    labels = ("Change ratio of void (1, 2)", "Change ratio of void (2, 2)", "Change ratio of void (1, 2)")
+    labels = tuple(f"Change ratio of the void in row {row}, column 2" for row in (1, 2, 1))
     assert history.steps == labels
     history.go_to(0)
     assert history.document.candidate == before
@@ -213,7 +213,7 @@ def test_that_gestures_in_quick_succession_all_arrive_in_order(by_hand: MainWind
     labels = []
     for void in [(0, 1), (1, 2), (3, 3)]:
         turn(view, middle_of(view, void), 2)
-        labels.append(f"Change ratio of void {void}")
+        labels.append("Change ratio of the void in row {}, column {}".format(*void))
     settle(by_hand, until)
     for void in [(0, 1), (1, 2), (3, 3)]:
         assert ratio(by_hand, void) > first.sheet.field.ratio[void]
@@ -230,7 +230,10 @@ def test_that_undo_during_a_gesture_takes_back_that_gesture_and_redo_brings_it(
     turn(view, middle_of(view, (1, 2)), 3)
     by_hand.services.project.undo()  # before it has been scored
     settle(by_hand, until)
-    assert chosen(by_hand) == before and by_hand.session.history.redo_label == "Change ratio of void (1, 2)"
+    assert (
+        chosen(by_hand) == before
+        and by_hand.session.history.redo_label == "Change ratio of the void in row 1, column 2"
+    )
     by_hand.services.project.redo()
     assert ratio(by_hand, (1, 2)) > before.sheet.field.ratio[1, 2]
     assert view.design is not None and view.design.deployment.field == chosen(by_hand).sheet.field

@@ -26,10 +26,10 @@ def test_that_alt_click_locks_and_unlocks_a_void_undoably(by_hand: MainWindow) -
     place = middle_of(view, (2, 1))
     QTest.mouseMove(view, place)
     QTest.mouseClick(view, LEFT, ALT, place)
-    assert session.document.locked == {(2, 1)} and session.history.undo_label == "Lock void (2, 1)"
+    assert session.document.locked == {(2, 1)} and session.history.undo_label == "Lock the void in row 2, column 1"
     assert by_hand.status_text.text().endswith("locked.") and view.voids.lines[0].endswith("locked")
     QTest.mouseClick(view, LEFT, ALT, place)
-    assert session.document.locked == frozenset() and session.history.undo_label == "Unlock void (2, 1)"
+    assert session.document.locked == frozenset() and session.history.undo_label == "Unlock the void in row 2, column 1"
     by_hand.commands["undo"].trigger()
     by_hand.commands["undo"].trigger()
     assert session.history.undo_label is None
@@ -88,7 +88,7 @@ def test_that_the_keyboard_walks_changes_and_locks(by_hand: MainWindow, until: U
     QTest.keyClick(view, Qt.Key.Key_Minus)
     settle(by_hand, until)
     assert ratio(by_hand, (1, 1)) == pytest.approx(1.05 * before, rel=1e-3)
-    assert session.history.undo_label == "Change ratio of void (1, 1)"
+    assert session.history.undo_label == "Change ratio of the void in row 1, column 1"
     QTest.keyClick(by_hand, Qt.Key.Key_L)
     assert session.document.locked == {(1, 1)}
 
@@ -103,7 +103,7 @@ def test_that_a_typed_ratio_is_one_step(by_hand: MainWindow, until: Until) -> No
     QTest.keyClick(bar.ratio, Qt.Key.Key_Return)
     settle(by_hand, until)
     assert ratio(by_hand, (3, 2)) == 1.75
-    assert by_hand.session.history.undo_label == "Change ratio of void (3, 2)"
+    assert by_hand.session.history.undo_label == "Change ratio of the void in row 3, column 2"
 
 
 def test_that_several_voids_change_in_one_step_and_locked_ones_stay(by_hand: MainWindow, until: Until) -> None:

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication, QListWidgetItem, QProxyStyle, QStyle
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.fabricate.machine import cuttable, find_machine, machines
-from kirigami_studio.gui.make.machine_question import CuttingQuestion
+from kirigami_studio.gui.make.machine_question import KINDS, CuttingQuestion
 from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.gui.window.pages import WindowPage
 from kirigami_studio.gui.window.welcome_page import OFFERS, moves
@@ -145,12 +145,46 @@ def test_that_each_material_has_a_picture_of_what_it_becomes_and_its_words(begun
     assert question.list.count() == len(machines().items) and not question.back.isVisible()
 
 
+def test_that_a_machine_of_every_kind_is_seen_without_scrolling(begun: MainWindow) -> None:
+    """Before, lasers were below five machines with a blade."""
+    begun.resize(1280, 720)
+    QApplication.processEvents()
+    listed = begun.welcome.question.list
+    seen = [listed.item(row) for row in range(listed.count())]
+    seen = [item for item in seen if listed.viewport().rect().contains(listed.visualItemRect(item))]
+    assert {find_machine(item.data(Qt.ItemDataRole.UserRole)).kind for item in seen} == {kind for kind, _ in KINDS}
+
+
+def test_that_materials_say_how_long_the_machine_will_cut_their_sheet(begun: MainWindow) -> None:
+    question = begun.welcome.question
+    click_on(question, "diode-10w")
+    assert " h" in item_of(question, "plywood-co2").text() and " min" in item_of(question, "card-co2").text()
+    question.back.click()
+    click_on(question, "hand")
+    assert " min" not in item_of(question, "paper-hand").text()
+
+
+def test_that_recovering_is_offered_only_where_an_earlier_session_left_work(
+    begun: MainWindow, project_file: Path, tmp_path: Path
+) -> None:
+    """Before, the first start offered to recover what there was not."""
+    offer, folder = begun.welcome.offers["recover"], tmp_path / "recovery"
+    assert not offer.isVisible()
+    begun.services.project.recovery.use(folder)
+    assert not offer.isVisible()
+    folder.mkdir(exist_ok=True)
+    (folder / "1-left.kiri").write_bytes(project_file.read_bytes())
+    begun.services.project.recovery.use(folder)
+    assert offer.isVisible()
+
+
 @pytest.mark.parametrize(("width", "height"), [(1000, 640), (1280, 720), (1440, 900)])
 def test_that_every_part_of_the_first_page_fits(begun: MainWindow, width: int, height: int) -> None:
     begun.resize(width, height)
+    page = begun.welcome
+    page.offer_recovery(True)
     for _ in range(3):
         QApplication.processEvents()
-    page = begun.welcome
     parts: list[QWidget] = [page.question.list, page.question.later, *page.offers.values(), page.pairs.list]
     for part in (*parts, begun.target.view, begun.target.start, begun.settings.second, begun.run.generate):
         assert part.isVisible() and part.width() >= part.minimumSizeHint().width(), part.objectName()

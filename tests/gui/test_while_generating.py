@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
+from kirigami_studio.fabricate.findings import Note
+from kirigami_studio.gui.gallery.gallery_model import UNCHECKED_ROLE
+from kirigami_studio.gui.run import generate_bar
 from kirigami_studio.gui.stage.layout_view import CAPTION_HEIGHT
 from kirigami_studio.gui.window.main_window import MainWindow
+from kirigami_studio.pipeline.events import Result
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.as_cut import AsCut, Outcome, StrainFigure
+from kirigami_studio.studio.designing import Judged
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -75,3 +82,50 @@ def test_that_words_and_target_do_not_lie_over_each_other(designed: MainWindow) 
     transform = view.transform()
     assert transform is not None and target is not None
     assert transform.to_pixels(target.points)[:, 1].min() >= CAPTION_HEIGHT
+
+
+def test_that_a_design_that_nobody_has_checked_says_so_on_its_card_until_the_run_has(
+    heart: MainWindow, designs: Document
+) -> None:
+    """Before, it had its match and an icon without a word, as one that is ready."""
+    services, model, first = heart.services, heart.gallery.view.model_, designs.candidates[0]
+    begin_run(heart)
+    services.session.display.add(services.session.cache.entry(first))
+    card = model.index(0, 0)
+    assert card.data(UNCHECKED_ROLE) == "Not checked yet"
+    found = AsCut(0.0, 0.0, Outcome.CLOSES, 0.0, 0.01, StrainFigure.OUT_OF_PLANE, 0.9, 0.9)
+    services.run.judged.emit(Judged(first, None, 0.0, found))
+    assert card.data(UNCHECKED_ROLE) == "" and model.verdict_of(first).is_checked
+    services.run.judged.emit(Judged(first, Note.of("rank.jams", own=20.0), 0.0, None))
+    assert services.session.display.ranking.refusals.keys() == {first}
+    services.run.ended.emit(False)
+
+
+def test_that_the_times_of_designing_and_of_checking_are_both_said(designed: MainWindow, designs: Document) -> None:
+    """Before, eight designs "in 8.6 s" after minutes of waiting."""
+    planner, target = designed.services.generation.planner, designs.target
+    assert target is not None
+    request = planner.anew(target).request
+    result = Result(request, designs.candidates, 3, 8.0, judging_seconds=100.0)
+    said = planner.summary(result, designs, "", 109.0)
+    assert "9 s" in said and "100 s" in said and "Best" in said
+    none = replace(result, refusals=dict.fromkeys(designs.candidates, Note.of("rank.not_feasible")))
+    said = planner.summary(none, designs, "", 109.0)
+    assert "100 s" in said and "None can be cut" in said and "Best" not in said
+
+
+def test_that_a_step_that_takes_long_shows_its_seconds_until_the_run_ends(
+    heart: MainWindow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before, nothing moved while one design was checked for half a minute."""
+    begin_run(heart)
+    bar, timer = heart.run, heart.run._seconds
+    bar.show_progress(500, 1000, "Checking 1 of 8")
+    assert timer.isActive()
+    bar.show_seconds()
+    assert bar.progress_text.text() == "Checking 1 of 8"
+    monkeypatch.setattr(generate_bar, "WORTH_COUNTING", 0.0)
+    bar.show_seconds()
+    assert bar.progress_text.text().startswith("Checking 1 of 8") and bar.progress_text.text().endswith("0 s")
+    heart.services.run.ended.emit(False)
+    assert not timer.isActive()

@@ -27,6 +27,7 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio import verdict as verdicts
+from kirigami_studio.studio.cutting import expected_seconds, plan_sheet
 from kirigami_studio.studio.making import CutRequest, ExportedFiles, Output, exporting, exporting_coupon, planned
 from kirigami_studio.studio.verdict import SIGNS_OF_A_JAM
 
@@ -145,3 +146,17 @@ def test_that_a_sheet_whose_connectors_are_all_cut_is_written_and_will_not_work(
     assert (tmp_path / "cut.dxf").is_file() and found.verdict is not None
     assert found.verdict.level is verdicts.Level.FAILS and not found.ok
     assert found.verdict.as_cut is None and found.verdict.to_json()["jam_deg"] is None
+
+
+@pytest.mark.parametrize(
+    ("machine", "material"), [("", "film-uv"), ("diode-10w", "card-co2"), ("cricut-maker", "drag-knife")]
+)
+def test_that_the_time_of_cutting_that_is_expected_before_a_run_is_near_that_of_a_plan(
+    machine: str, material: str
+) -> None:
+    settings = FabricationSettings(machine=machine, material=material, width_mm=160.0)
+    plan = plan_sheet(deploy(RatioField.uniform(8, 8)), settings)
+    ratio = expected_seconds(settings, (8, 8)) / plan.times.total
+    assert 0.8 < ratio < 1.25, ratio
+    assert expected_seconds(replace(settings, machine="hand")) == 0.0, "nobody knows how fast hands are"
+    assert expected_seconds(replace(settings, material="none such")) == 0.0

@@ -41,6 +41,15 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "a sheet whose panels are closer to squares."
     ),
     "rim.not_numbers": mark("The rim's {side} side must be a list of finite numbers: positions of mouths in cells."),
+    "rim.hinges_not_numbers": mark(
+        "The rim's hinges must be a list of finite numbers: how far edge hinges are from halfway between two mouths."
+    ),
+    "rim.wrong_hinges": mark(
+        "Edge hinges on the rim: {got}; a sheet of {rows} x {columns} voids needs {wanted}, or none named."
+    ),
+    "rim.hinge_too_far": mark(
+        "Edge hinges must lie at most {farthest:g} of the way between two mouths from its middle."
+    ),
     "rim.not_four_sides": mark('A rim must be {{"top": [...], "right": [...], "bottom": [...], "left": [...]}}.'),
     "rim.wrong_count": mark(
         "Mouths on the rim's {side} side: {got}; a sheet of {rows} x {columns} voids needs {wanted} there."

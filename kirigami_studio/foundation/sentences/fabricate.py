@@ -68,20 +68,20 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     # Cuts without room
     "slit.no_room": mark_n(
-        "The slit of void ({row}, {column}) is {length_mm:.2f} mm long, but connectors of {connector_mm:g} mm and "
-        "a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or the "
-        "connectors narrower.",
-        "The slit of void ({row}, {column}) is {length_mm:.2f} mm long, but connectors of {connector_mm:g} mm and "
-        "a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or the "
-        "connectors narrower ({count} cuts are too short).",
+        "The slit of the void in row {row}, column {column} is {length_mm:.2f} mm long, but connectors of "
+        "{connector_mm:g} mm and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least "
+        "{times:.2f} times wider or the connectors narrower.",
+        "The slit of the void in row {row}, column {column} is {length_mm:.2f} mm long, but connectors of "
+        "{connector_mm:g} mm and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least "
+        "{times:.2f} times wider or the connectors narrower ({count} cuts are too short).",
     ),
     "edge_cut.no_room": mark_n(
-        "The edge cut at void ({row}, {column}) is {length_mm:.2f} mm long, but a connector of {connector_mm:g} mm "
-        "and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or "
-        "the connectors narrower.",
-        "The edge cut at void ({row}, {column}) is {length_mm:.2f} mm long, but a connector of {connector_mm:g} mm "
-        "and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least {times:.2f} times wider or "
-        "the connectors narrower ({count} cuts are too short).",
+        "The edge cut at the void in row {row}, column {column} is {length_mm:.2f} mm long, but a connector of "
+        "{connector_mm:g} mm and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least "
+        "{times:.2f} times wider or the connectors narrower.",
+        "The edge cut at the void in row {row}, column {column} is {length_mm:.2f} mm long, but a connector of "
+        "{connector_mm:g} mm and a kerf of {kerf_mm:g} mm need {needed_mm:.2f} mm. Make the sheet at least "
+        "{times:.2f} times wider or the connectors narrower ({count} cuts are too short).",
     ),
     # Trimmed sheets
     "hinge.no_cut_left": mark("No cut is left at x = {x:.2f}, y = {y:.2f} mm. Keep more material when trimming."),

@@ -40,6 +40,7 @@ class Recovery(QObject):
     recovered = Signal(Document, object)  #: Path of its project or None
     recover_wanted = Signal(Leftover)  #: whoever asks about unsaved changes goes on with recover()
     kept = Signal(Document)  #: is on disk now
+    left_behind = Signal(bool)  #: whether there is work of earlier sessions to ask about
 
     def __init__(
         self, session: Session, tracer: PictureTracer, new_folder: Callable[[], Path], parent: QObject
@@ -77,6 +78,7 @@ class Recovery(QObject):
         self._folder = folder
         self._own = folder / f"{os.getpid()}-{os.urandom(6).hex()}{SUFFIX}"
         self.look_back()
+        self.left_behind.emit(bool(self._offered))
         self.notice()
 
     # the present session -------------------------------------------------------------------------------------------
@@ -232,6 +234,7 @@ class Recovery(QObject):
         """Delete the kept work."""
         _remove(leftover.file)
         self.leave(leftover)
+        self.left_behind.emit(bool(self._offered))
         self._session.set_status(tr("Discarded the autosaved work: {name}.", name=_called(leftover)))
 
     def leave(self, leftover: Leftover) -> None:
@@ -268,6 +271,7 @@ class Recovery(QObject):
             pending, self._pending = self._pending, None
             _remove(pending.file)
             self.leave(pending)
+            self.left_behind.emit(bool(self._offered))
 
 
 def format_time(note: RecoveryNote) -> str:

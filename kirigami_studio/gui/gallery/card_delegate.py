@@ -22,6 +22,7 @@ from kirigami_studio.gui.gallery.gallery_model import (
     NOTE_ROLE,
     RISE_ROLE,
     START_ROLE,
+    UNCHECKED_ROLE,
     VALUE_ROLE,
     VERDICT_ROLE,
 )
@@ -99,7 +100,8 @@ class CardDelegate(Cards):
         else:
             self._paint_closing(painter, card, left, verdict)
         told_apart: str = index.data(START_ROLE) or index.data(GRID_ROLE)
-        self._paint_numbers(painter, card, index.data(MATCH_ROLE), index.data(VALUE_ROLE), told_apart)
+        value: str = index.data(UNCHECKED_ROLE) or index.data(VALUE_ROLE)
+        self._paint_numbers(painter, card, index.data(MATCH_ROLE), value, told_apart)
         self._paint_level(painter, card, verdict)
 
     def _paint_closing(self, painter: QPainter, card: QRect, left: int, verdict: Verdict) -> None:

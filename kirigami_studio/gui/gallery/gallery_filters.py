@@ -167,7 +167,7 @@ def _number(
 ) -> DecimalField:
     """A number that filters, or "any" at 0."""
     field = decimal_field(
-        kind, name, 0.0, largest, decimals=decimals, step=step, suffix=suffix, accessible=accessible, width=92
+        kind, name, 0.0, largest, decimals=decimals, step=step, suffix=suffix, accessible=accessible, width=100
     )
     field.setPrefix(prefix)
     field.setSpecialValueText(tr("any"))

@@ -45,6 +45,7 @@ MARK_ROLE = Qt.ItemDataRole.UserRole + 5
 FRESH_ROLE = Qt.ItemDataRole.UserRole + 7  #: whether the last further run has added it
 NOTE_ROLE = Qt.ItemDataRole.UserRole + 14  #: what the user has noted of it
 VALUE_ROLE = Qt.ItemDataRole.UserRole + 6  #: words for the number that is sorted by
+UNCHECKED_ROLE = Qt.ItemDataRole.UserRole + 19  #: by rank, words in its place for a design that nobody has checked
 ALIKE_ROLE = Qt.ItemDataRole.UserRole + 9  #: how many designs look like this card and belong to it
 OPEN_ROLE = Qt.ItemDataRole.UserRole + 10  #: whether those are shown
 VERDICT_ROLE = Qt.ItemDataRole.UserRole + 12  #: Verdict: that of the stage where it is known, else an estimate
@@ -130,6 +131,7 @@ class GalleryModel(QAbstractListModel):
             DESIGN_ROLE: lambda entry: entry.design,
             RISE_ROLE: lambda entry: entry.rise,
             VALUE_ROLE: lambda entry: format_value(self._as_item(entry, 0), self._selection, self._width_mm),
+            UNCHECKED_ROLE: self._unchecked,
             NAME_ROLE: lambda entry: self.name_of(entry.candidate),
             NOTE_ROLE: lambda entry: self.note_of(entry.candidate),
             MARK_ROLE: lambda entry: self.mark_of(entry.candidate),
@@ -143,6 +145,10 @@ class GalleryModel(QAbstractListModel):
             START_ROLE: lambda entry: start_of(entry.candidate) if self._several_starts() else "",
             FRESH_ROLE: lambda entry: entry.candidate in self._fresh,
         }
+
+    def _unchecked(self, entry: Entry) -> str:
+        verdict = self.verdict_of(entry.candidate)
+        return verdict.words if self._selection.order is SortOrder.RANK and not verdict.is_checked else ""
 
     def _grid(self, entry: Entry) -> str:
         rows, columns = entry.candidate.sheet.grid

@@ -25,7 +25,7 @@ from kirigami_studio.gui.widgets import icons
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.project.document import Document, Mark
 from kirigami_studio.studio.as_cut import AsCut
-from kirigami_studio.studio.designing import limit_of
+from kirigami_studio.studio.designing import Judged, limit_of
 from kirigami_studio.studio.two_states import shown_match
 
 
@@ -86,6 +86,7 @@ class GalleryPresenter(QObject):
         self._estimates.changed.connect(self._show_estimates)
         self._estimates.judged.connect(self._show_judged)
         self._alikes.known.connect(view.set_groups)
+        self._generation.run.judged.connect(self._show_look)
 
     @property
     def _running(self) -> bool:
@@ -107,6 +108,17 @@ class GalleryPresenter(QObject):
     def _show_ready(self, document: Document) -> None:
         """Show whether designs can be added."""
         self._panel.bar.set_ready(bool(document.candidates) and not self._running)
+
+    def _show_look(self, looked: Judged) -> None:
+        """A run has looked closely at a design: its card says so, and all keep their places."""
+        display = self._session.display
+        if looked.refusal is None:
+            display.ranking = replace(display.ranking, losses={**display.ranking.losses, looked.candidate: looked.loss})
+        else:
+            refusals = {**display.ranking.refusals, looked.candidate: looked.refusal}
+            display.ranking = replace(display.ranking, refusals=refusals)
+        self._view.model_.set_ranking(display.ranking)
+        self._estimates.take_look(looked)
 
     def _move_balance(self, regular: float) -> None:
         """The balance of match and regularity is being moved: the cards follow, also those of a run."""
@@ -188,7 +200,8 @@ class GalleryPresenter(QObject):
         if not running:
             view.mark(document.candidate)
             limit = limit_of(document) if document.candidates else None
-            self._panel.show_why("" if limit is None else limit.text)
+            filled = self._session.ranking.why_filled(document.candidates) if document.candidates else None
+            self._panel.show_why("\n".join(note.text for note in (filled, limit) if note is not None))
         self._show_ready(document)
         self._show_chosen()
 

@@ -25,6 +25,7 @@ from kirigami_studio.gui.make.fabrication_panel import sheets_of
 from kirigami_studio.gui.make.hinge_bar import HingeBar
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, ToolButton
+from kirigami_studio.gui.widgets.layouts import push_button
 from kirigami_studio.gui.widgets.readable import readable_length, readable_mm, readable_size, readable_time
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.studio.making import laid_beds
@@ -38,6 +39,8 @@ PLAY_SECONDS = 12.0
 FRAME_MS = 16
 #: Pixels between the title and the numbers at least.
 GAP = 12
+#: A bar narrower than this (pixels) says only time and length of what is cut.
+NARROW = 360
 #: Lines that are shown without scrolling.
 MOST_LINES = 3
 ICONS = {Severity.ERROR: "fault", Severity.WARNING: "warning"}
@@ -82,6 +85,9 @@ class CutsPage(Card):
         self.body.addWidget(self.view, 1)
         self.body.addWidget(self.beds, 1)
         self.beds.hide()
+        self.generate = push_button(tr("Generate"), tr("Design sheets for this target (Ctrl+G)"), name="")
+        self.generate.hide()
+        self.body.addWidget(self.generate)
         for part in (self.problems, self.hinges, self.bar):
             self.body.addWidget(part)
         self._connect()
@@ -102,6 +108,10 @@ class CutsPage(Card):
         hinges.remove_wanted.connect(lambda: self.remove_wanted.emit(view.selected))
         hinges.reset_wanted.connect(lambda: self.reset_wanted.emit(view.selected))
         hinges.edited.connect(self.edited)
+
+    def offer_run(self, ready: bool) -> None:
+        """Offer a run where there is a target and no design that could be cut."""
+        self.generate.setVisible(ready)
 
     @property
     def summary(self) -> tuple[str, ...]:
@@ -312,6 +322,11 @@ class CutBar(QWidget):
         self.slider.setPageStep(max(last // 10, 1))
         self.slider.setValue(last)
         self._show_numbers()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        """A narrow bar leaves out the count, which the slider shows."""
+        super().resizeEvent(event)
+        self.count.setVisible(self.width() >= NARROW)
 
     def _take_step(self, step: int) -> None:
         self._show_numbers()

@@ -70,6 +70,7 @@ class ExportReport(QDialog):
         self.findings.setObjectName("reportFindings")
         self.findings.setAccessibleName(tr("Export report findings"))
         self.findings.setWordWrap(True)
+        self.findings.setResizeMode(QListWidget.ResizeMode.Adjust)  # lines wrap anew beside a scroll bar
         self.findings.setIconSize(QSize(18, 18))
         self.findings.setSelectionMode(QListWidget.SelectionMode.NoSelection)
         self.findings.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)

@@ -115,7 +115,7 @@ class FabricationPanel(Card):
         pane = plain_pane()
         table = QGridLayout(pane)
         table.setContentsMargins(0, 0, 0, 0)
-        table.setHorizontalSpacing(4)
+        table.setHorizontalSpacing(6)
         table.setVerticalSpacing(4)
         table.setColumnStretch(1, 1)
         for line, (text, box, button) in enumerate(

@@ -6,13 +6,15 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QFrame, QListWidget, QListWidgetItem
 
-from kirigami_studio.fabricate.machine import MachineKind, cuttable, find_machine, machines
+from kirigami_studio.fabricate.machine import USUAL, MachineKind, cuttable, find_machine, machines
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.settings import settings_of
 from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.widgets.layouts import column, label, push_button, row
+from kirigami_studio.gui.widgets.readable import rough_time
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.settings.layers import note_on
+from kirigami_studio.studio.cutting import expected_seconds
 
 #: What each construction is called.
 CONSTRUCTIONS = {one.value: one for one in settings_of(FabricationSettings)["construction"].setting.choices}
@@ -25,8 +27,8 @@ KINDS = (
     (MachineKind.UV, mark("Thin films and foils.")),
     (MachineKind.PRINTER, mark("PLA, PETG and TPU: pieces with their pins, or one soft sheet.")),
 )
-#: Pixels: the picture of a construction, and the least height of the list.
-PICTURE, LEAST_LIST = QSize(56, 56), 150
+#: Pixels: the picture of a construction, and the least height of the list: as many machines as there are kinds.
+PICTURE, LEAST_LIST = QSize(56, 56), 212
 
 
 class CuttingQuestion(QFrame):
@@ -57,10 +59,15 @@ class CuttingQuestion(QFrame):
         column(head, (self.list, 1), on=self, spacing=4, margins=(10, 6, 8, 8))
 
     def offer(self) -> None:
-        """List all machines by their kinds, bundled and own ones."""
+        """List all machines: the usual one of each kind first, then the others by kind."""
         order, about = [kind for kind, _ in KINDS], dict(KINDS)
         known = sorted(
-            machines().items.values(), key=lambda machine: (order.index(machine.kind), tr(machine.name).casefold())
+            machines().items.values(),
+            key=lambda machine: (
+                machine.key not in USUAL.values(),
+                order.index(machine.kind),
+                tr(machine.name).casefold(),
+            ),
         )
         self._begin(tr("What will you cut with?"), "")
         for machine in known:
@@ -69,7 +76,8 @@ class CuttingQuestion(QFrame):
     def _offer_materials(self, key: str) -> None:
         """List the materials of a machine by name, those that one sheet cannot be made of last."""
         machine = find_machine(key)
-        self._begin(tr("{machine}: which material?", machine=tr(machine.name)), key)
+        spoken = tr("{machine}: which material?", machine=tr(machine.name))
+        self._begin(tr("Which material?"), key, spoken)
         offered = cuttable(machine).items()
         for key, material in sorted(
             offered, key=lambda one: (one[1].limits_note is not None, tr(one[1].name).casefold())
@@ -77,14 +85,21 @@ class CuttingQuestion(QFrame):
             note = note_on(material, FabricationSettings())
             item = self._add(tr(material.name), key, tr(material.note) if note is None else note.text)
             construction = material.construction
-            item.setText(f"{item.text()}\n{tr(CONSTRUCTIONS[construction].label)}")
+            seconds = expected_seconds(
+                FabricationSettings(machine=machine.key, material=key, width_mm=material.sheet_mm)
+            )
+            made = tr(CONSTRUCTIONS[construction].label)
+            if seconds:
+                made = tr("cut in about {time}  ·  {construction}", construction=made, time=rough_time(seconds))
+            item.setText(f"{item.text()}\n{made}")
             item.setIcon(QIcon(str(resource("constructions", f"{construction.value}.png"))))
 
-    def _begin(self, title: str, machine: str) -> None:
+    def _begin(self, title: str, machine: str, spoken: str = "") -> None:
         self._machine = machine
         self.list.clear()
-        self.list.setAccessibleName(title)
+        self.list.setAccessibleName(spoken or title)
         self.title.setText(title)
+        self.title.setToolTip(spoken)
         self.back.setVisible(bool(machine))
 
     def _add(self, text: str, key: str, tip: str) -> QListWidgetItem:

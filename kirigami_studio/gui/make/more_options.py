@@ -60,7 +60,7 @@ class MoreOptions(QWidget):
         table.addLayout(cuts("copies"), 3, 0)
         table.addLayout(cuts("copy_gap_mm"), 3, 1)
         table.addWidget(self.rows, 3, 2, 1, 2, Qt.AlignmentFlag.AlignBottom)
-        table.addLayout(files("paper"), 4, 0, 1, 2)
+        table.addLayout(files("paper"), 4, 0, 1, 2, Qt.AlignmentFlag.AlignBottom)
         marks = QVBoxLayout()
         marks.setSpacing(4)
         marks.addWidget(self.engrave)

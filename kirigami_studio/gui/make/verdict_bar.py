@@ -12,6 +12,9 @@ from kirigami_studio.foundation.words import tr, tr_n
 from kirigami_studio.gui.make.verdict import VerdictState
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.announcing import announce
+from kirigami_studio.gui.widgets.card import ElidedLabel
+from kirigami_studio.gui.widgets.fitted_text import elided
+from kirigami_studio.gui.widgets.layouts import TOUCH
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.gui.widgets.verdict_marks import ICONS, colour_of, level_of
 
@@ -22,9 +25,8 @@ if TYPE_CHECKING:
 SHARE = 0.62
 #: Pixels beside headline and fixes: margins, icon, gaps.
 BESIDE = 64
-#: A banner at least this wide (pixels) tells the worst problem in one line, and so does one in a low panel.
-WIDE = 560
-LINE_USED = 0.9
+#: Lines of the worst problem, and the share of them that is used: what is left of one when words wrap is lost.
+LINES, LINE_USED = 2, 0.9
 ICON_EDGE = 20
 
 
@@ -38,19 +40,17 @@ class VerdictBar(QFrame):
         self.setObjectName("verdictBar")
         self._palette: Palette = LIGHT
         self._state = VerdictState()
-        self._low = False
         self.setAccessibleName(tr("Verdict on the sheet as cut"))
         self.icon = QLabel()
         self.icon.setFixedSize(ICON_EDGE, ICON_EDGE)
-        self.headline = QLabel()
+        self.headline = ElidedLabel(Qt.TextElideMode.ElideRight)
         self.headline.setObjectName("verdictLevel")
-        self.headline.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.headline.setMinimumWidth(0)
         self.sentence = QLabel()
         self.sentence.setObjectName("muted")
         self.sentence.setWordWrap(True)
         self.sentence.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
         self.sentence.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.sentence.setFixedHeight(LINES * self.sentence.fontMetrics().lineSpacing() + 2)
         self.more = QPushButton(tr("More fixes"))
         self.more.setObjectName("small")
         self.more.setToolTip(tr("More changes that were tried on this design and help."))
@@ -72,16 +72,15 @@ class VerdictBar(QFrame):
         grid.addWidget(self.sentence, 1, 0, 1, 3)
         grid.setColumnStretch(1, 1)
         # A button is higher than a line of text: room for one is kept, so that nothing moves when fixes are found.
-        grid.setRowMinimumHeight(0, self.more.sizeHint().height())
+        grid.setRowMinimumHeight(0, TOUCH)
+        policy = self.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)  # what is above it does not move when the first verdict comes
+        self.setSizePolicy(policy)
         self.hide()
 
     def show_state(self, state: VerdictState) -> None:
         """Show what is known; nothing without a design."""
         self._state = state
-        if state.known:  # from now on its place is kept: what is above it does not move
-            policy = self.sizePolicy()
-            policy.setRetainSizeWhenHidden(True)
-            self.setSizePolicy(policy)
         self.setVisible(state.known)
         self._show_words()
         self._show_fixes()
@@ -91,7 +90,7 @@ class VerdictBar(QFrame):
         said = headline(state)
         if said != self.headline.text() and not state.pending:
             announce(self, said)
-        self.headline.setText(said)
+        self.headline.setText(said, *([] if verdict is None or state.pending else [verdict.words]))
         self.icon.setAccessibleName(said)
         self.setToolTip("\n".join(state.lines))
         self._fit_sentence()
@@ -105,16 +104,13 @@ class VerdictBar(QFrame):
         self.style().polish(self)
 
     def _fit_sentence(self) -> None:
-        """Show the worst problem, or the first note, in one line of a wide or low banner or two of a narrow one."""
+        """Show the worst problem, or the first note, in two lines."""
         margins = self._grid.contentsMargins()
         width = max(self.width() - margins.left() - margins.right() - 2 * self.frameWidth() - 2, 1)
         said, metrics = self._state.lines[1:2], self.sentence.fontMetrics()
-        lines = 1 if width >= WIDE or self._low else 2
-        self.sentence.setWordWrap(lines > 1)
-        # What is left of a line when words wrap is lost.
-        room = width if lines == 1 else round(LINE_USED * lines * width)
-        self.sentence.setText(metrics.elidedText(said[0], Qt.TextElideMode.ElideRight, room) if said else "")
-        self.sentence.setFixedHeight(lines * metrics.lineSpacing() + 2)
+        self.sentence.setText(said[0] if said else "")
+        if self.sentence.heightForWidth(width) > self.sentence.height():
+            self.sentence.setText(elided(metrics, said[0], round(LINE_USED * LINES * width)))
 
     def _show_fixes(self) -> None:
         for button in self.buttons:
@@ -157,13 +153,6 @@ class VerdictBar(QFrame):
             action.triggered.connect(lambda _=False, fix=fix: self.fix_wanted.emit(fix))
         self.more.setText(tr("Fixes") if len(hidden) == len(fixes) else tr("More fixes"))
         self.more.setVisible(bool(hidden))
-
-    def set_low(self, low: bool) -> None:
-        """Leave room to the drawing in a low panel: one line less, at once."""
-        if self._low != low:
-            self._low = low
-            self._fit_sentence()
-            self._grid.activate()
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(0, super().minimumSizeHint().height())

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QObject, QSize, Qt
+from PySide6.QtCore import QElapsedTimer, QObject, QSize, Qt, QTimer
+from PySide6.QtGui import QHideEvent, QShowEvent
 from PySide6.QtWidgets import QProgressBar, QSizePolicy, QStackedLayout, QWidget
 
 from kirigami_studio.foundation.words import tr
@@ -17,9 +18,13 @@ from kirigami_studio.gui.session.session import Session
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import ElidedLabel
 from kirigami_studio.gui.widgets.layouts import column, plain_pane, push_button, row
+from kirigami_studio.gui.widgets.readable import readable_time
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.project.document import Document
 from kirigami_studio.studio import importing
+
+#: Seconds of one step of a run from which on they are shown.
+WORTH_COUNTING = 3.0
 
 
 class GenerateBar(QWidget):
@@ -35,6 +40,9 @@ class GenerateBar(QWidget):
         self.progress.setTextVisible(False)
         self.progress.setAccessibleName(tr("Run progress"))
         self.progress_text = ElidedLabel(Qt.TextElideMode.ElideRight)
+        self._message, self._since = "", QElapsedTimer()
+        self._seconds = QTimer(self, interval=1000)  # one step may take long: its seconds say that it goes on
+        self._seconds.timeout.connect(self.show_seconds)
         self._work = plain_pane()
         row((column(self.progress_text, self.progress, spacing=3), 1), self.stop, on=self._work, spacing=8)
         self._work.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
@@ -56,7 +64,9 @@ class GenerateBar(QWidget):
     def show_work(self, sentence: str) -> None:
         """Something goes on that can be stopped."""
         self.progress.setRange(0, 0)
-        self.progress_text.setText(sentence)
+        self._say(sentence)
+        if self.isVisible():
+            self._seconds.start()
         self._pages.setCurrentWidget(self._work)
 
     def show_progress(self, done: int, total: int, message: str) -> None:
@@ -66,10 +76,33 @@ class GenerateBar(QWidget):
         self.progress.setRange(0, total if done else 0)
         self.progress.setValue(done)
         self.progress.setUpdatesEnabled(True)
-        self.progress_text.setText(message)
+        self._say(message)
+
+    def _say(self, message: str) -> None:
+        if message != self._message or not self._since.isValid():
+            self._message = message
+            self._since.start()
+            self.progress_text.setText(message)
+
+    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802 - Qt's name
+        super().showEvent(event)
+        if self._pages.currentWidget() is self._work:
+            self._seconds.start()
+
+    def hideEvent(self, event: QHideEvent) -> None:  # noqa: N802 - Qt's name
+        super().hideEvent(event)
+        self._seconds.stop()
+
+    def show_seconds(self) -> None:
+        """Add for how long the present step goes on, where there is room."""
+        seconds = 1e-3 * self._since.elapsed()
+        if seconds >= WORTH_COUNTING:
+            self.progress_text.setText(f"{self._message}  \N{MIDDLE DOT}  {readable_time(seconds)}", self._message)
 
     def show_idle(self) -> None:
         """No run is going on."""
+        self._seconds.stop()
+        self._since.invalidate()
         self.generate.setEnabled(True)
         self._pages.setCurrentWidget(self.generate)
 

@@ -20,10 +20,19 @@ from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.queue import JobCallbacks, LatestJob
 from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.gui.stage.hand_editor import HandEditor
+from kirigami_studio.gui.widgets.readable import readable_time
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, StartShape
-from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished, Progress, Result, Started
+from kirigami_studio.pipeline.events import (
+    CandidateFound,
+    CandidateImproved,
+    Finished,
+    Phase,
+    Progress,
+    Result,
+    Started,
+)
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request, provenance
 from kirigami_studio.pipeline.variety import distinct, look_alikes
@@ -36,6 +45,7 @@ from kirigami_studio.project.edits import Edit
 from kirigami_studio.studio.designing import (
     Decoded,
     GridChosen,
+    Judged,
     KnownAsCut,
     ModelFound,
     RunReport,
@@ -46,6 +56,8 @@ from kirigami_studio.studio.designing import (
 
 #: Angles closer than this (radians) are one.
 SAME_ANGLE = 1e-9
+#: Steps of the bar that shows how far a run is.
+WHOLE = 1000
 
 
 class Generation(QObject):
@@ -121,7 +133,7 @@ class Generation(QObject):
         session.apply(self.planner.edit_for(result, facts, session.display.preview))
         if session.document is before:  # all of it was there already
             session.display.show()
-        session.set_status(self.planner.summary(result, before, self.run.grid_reason))
+        session.set_status(self.planner.summary(result, before, self.run.grid_reason, self.run.seconds))
         self._go_on()
 
     def _go_on(self) -> None:
@@ -129,6 +141,8 @@ class Generation(QObject):
         session = self._session
         if not session.document.other_parts:
             return
+        # A part of the shape and size of one that was just designed has its designs already.
+        self._left = [number for number in self._left if not session.document.parts[number].candidates]
         if not self._left:
             if session.document.part != self._shown:
                 session.apply(target_parts.show_part(session.document, self._shown))
@@ -281,20 +295,38 @@ class RunPlanner:
         grid = result.request.grid if result.request.grid_chosen else None
         new = NewDesigns(result.candidates, facts, seed, result.request.target, grid)
         chosen = preview if preview is not None and preview in (*staying, *result.candidates) else None
-        return candidate_edits.renew_candidates(document, new, self._session.ranking.key, chosen)
+        edit = candidate_edits.renew_candidates(document, new, self._session.ranking.key, chosen)
+        return replace(edit, document=target_parts.with_twins(edit.document, document.part))
 
-    def summary(self, result: Result, before: Document, grid_reason: str = "") -> str:
-        """What the status line says of a completed run, with the reason for its grid where it chose that."""
+    def summary(self, result: Result, before: Document, grid_reason: str = "", seconds: float = 0.0) -> str:
+        """Sentence on a completed run: times, best match, the reason for a grid that it chose.
+
+        ``seconds`` is all that it took, choices and loading included.
+        """
         plan, document = self.plan, self._session.document
         if plan is None or not plan.joins:
-            score = result.best.score
+            designing = readable_time(max(seconds - result.judging_seconds, result.seconds))
+            judging = readable_time(result.judging_seconds)
+            if result.best in result.refusals:
+                return tr_n(
+                    "{count} design in {designing}, checked as cut in {judging}. It cannot be cut in this material and "
+                    "size: the verdict says why.",
+                    "{count} designs in {designing}, checked as cut in {judging}. None can be cut in this material and "
+                    "size: the verdict says why.",
+                    len(result.candidates),
+                    designing=designing,
+                    judging=judging,
+                )
             told = tr_n(
-                "Generated {count} design in {seconds:.1f} s: match {match:.1f} %, panels ±{variation:.0f} %.",
-                "Generated {count} designs in {seconds:.1f} s. Best: match {match:.1f} %, panels ±{variation:.0f} %.",
+                "{count} design in {designing}, checked as cut in {judging}: match {match:.1f} %, panels "
+                "±{variation:.0f} %.",
+                "{count} designs in {designing}, checked as cut in {judging}. Best: match {match:.1f} %, panels "
+                "±{variation:.0f} %.",
                 len(result.candidates),
-                seconds=result.seconds,
+                designing=designing,
+                judging=judging,
                 match=100 * result.ranking.made_match(result.best),
-                variation=100 * score.evenness.area_cv,
+                variation=100 * result.best.score.evenness.area_cv,
             )
             return f"{told} {grid_reason}".strip()
         known = set(before.candidates)
@@ -388,6 +420,7 @@ class DesignRun(QObject):
     progressed = Signal(int, int, str)
     grid_chosen = Signal()  #: where that was left to the run
     found = Signal(Entry)  #: new or improved
+    judged = Signal(Judged)  #: a design was looked at closely
     completed = Signal(Result, dict)  #: with its provenance
     cancelled = Signal()
     failed = Signal(str, str)  #: sentence, trace
@@ -404,9 +437,14 @@ class DesignRun(QObject):
         self._others: tuple[Candidate, ...] = ()
         self._ranking = Ranking()
         self._reports = 0
-        self._clock = QElapsedTimer()
+        self._clock, self._took, self._checking = QElapsedTimer(), 0.0, False
         self._sampled: dict[int, float] = {}  # sIoU of each candidate when it was found
         self._latest: dict[int, Candidate] = {}
+
+    @property
+    def seconds(self) -> float:
+        """Wall time since the run began, choices and loading included."""
+        return self._took or 1e-3 * self._clock.elapsed()
 
     @property
     def running(self) -> bool:
@@ -423,6 +461,7 @@ class DesignRun(QObject):
         self._others = beside if joins else ()
         self._ranking, self.grid_reason = Ranking.of(request), ""
         self._clock.start()
+        self._took, self._checking = 0.0, False
         self._sampled.clear()
         self._latest.clear()
         callbacks = JobCallbacks(self._take, partial(self.ended.emit, False), self._cancel, self._fail)
@@ -470,9 +509,19 @@ class DesignRun(QObject):
                     self._request = self._request.with_start(start)
                 self._session.set_status(reason)
             case Started():
-                self.progressed.emit(0, report.total, tr("Starting (0 of {total})", total=report.total))
+                self.progressed.emit(0, WHOLE, tr("Starting (0 of {total})", total=report.total))
             case Progress():
-                self.progressed.emit(report.done, report.total, report.message)
+                self.progressed.emit(round(WHOLE * report.share), WHOLE, report.message)
+                if report.phase is Phase.JUDGING and not self._checking:
+                    self._checking = True
+                    self._session.set_status(
+                        tr(
+                            "Designs are checked as they will be cut, best first, until none could be better. "
+                            "Look at any of them meanwhile."
+                        )
+                    )
+            case Judged():
+                self.judged.emit(report)
             case CandidateFound() | CandidateImproved():
                 self._note(report.candidate)
             case Decoded(candidate, deployment):
@@ -483,6 +532,7 @@ class DesignRun(QObject):
                 self.found.emit(replace(entry, rise=candidate.score.siou - self._sampled[candidate.index]))
             case Finished(result):
                 self._job.stop()  # the result is the end
+                self._took = 1e-3 * self._clock.elapsed()
                 self.ended.emit(True)
                 self.completed.emit(result, provenance(result.request, self._digest))
 

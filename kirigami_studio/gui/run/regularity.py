@@ -110,9 +110,9 @@ class Regularity(QObject):
                 if before is not None and after is not None:
                     self._better[before] = after
                 sentence = tr("Fitting again: {done} of {total} designs", done=done, total=total)
-                self.progressed.emit(done, total, sentence)
-            case Progress(done, total, sentence):
-                self.progressed.emit(done, total, sentence)
+                self.progressed.emit(done, 2 * total, sentence)
+            case Progress(done, total, sentence):  # of checking, the second half
+                self.progressed.emit(total + done, 2 * total, sentence)
             case KnownAsCut():
                 self._known = report
 

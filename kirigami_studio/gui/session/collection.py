@@ -98,11 +98,9 @@ class DiscardedDesigns(QObject):
         if discarded and self._session.history.undo_label is not None:
             count = len(before.candidates)
             sentence = tr_n(
-                "The design for the old target was removed. Undo restores it.",
-                "The {count} designs for the old target were removed. Undo restores them.",
-                count,
+                "{count} design of the old target is gone.", "{count} designs of the old target are gone.", count
             )
-            self._offer = Message(sentence, Tone.HINT, actions=((tr("Restore"), self.bring_back),))
+            self._offer = Message(sentence, Tone.HINT, actions=((tr("Restore"), self.bring_back),), passing=True)
             self._session.post(self._offer)
         elif self._offer is not None and (document.candidates or self._session.history.undo_label is None):
             self._session.withdraw(self._offer)

@@ -24,3 +24,4 @@ class Message:
     tone: Tone = Tone.HINT
     details: str = ""  #: trace or list, shown when asked for
     actions: tuple[tuple[str, Callable[[], None]], ...] = ()  #: what may be done about it, one button each
+    passing: bool = False  #: whether it goes by itself although it has actions, as Undo does the same

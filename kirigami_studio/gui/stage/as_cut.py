@@ -16,7 +16,7 @@ from kirigami_studio.gui.session.session import Entry, Session
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.project.sheet_size import cut_for
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio.designing import any_sheet, one_sheet
+from kirigami_studio.studio.designing import Judged, any_sheet, one_sheet
 from kirigami_studio.studio.making import CutRequest, Estimated, MadePieces, Planned, estimating, simulating
 
 if TYPE_CHECKING:
@@ -172,6 +172,12 @@ class AsCutEstimates(QObject):
         if made is not None and settings == one_sheet(cut_for(self._session.document, candidate)):
             return made
         return self.known.get(candidate)
+
+    def take_look(self, looked: Judged) -> None:
+        """A run has looked closely at a design: that takes the place of an estimate."""
+        if looked.as_cut is not None:
+            self.known[looked.candidate] = looked.as_cut
+        self.changed.emit(dict(self.known))
 
     def take_verdict(self, request: CutRequest, verdict: Verdict) -> None:
         """A design was judged, on the stage or for its card: from now on that is shown everywhere."""

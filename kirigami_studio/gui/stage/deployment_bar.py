@@ -6,20 +6,21 @@ import math
 from enum import Enum
 
 from PySide6.QtCore import QElapsedTimer, QSettings, QSignalBlocker, Qt, QTimer, Signal
-from PySide6.QtGui import QAction, QActionGroup
-from PySide6.QtWidgets import QMenu, QToolButton, QWidget
+from PySide6.QtGui import QAction, QActionGroup, QResizeEvent
+from PySide6.QtWidgets import QGridLayout, QMenu, QToolButton, QWidget
 
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.phi_slider import PhiSlider
 from kirigami_studio.gui.widgets import icons
 from kirigami_studio.gui.widgets.card import TOOL_ICON, SwitchButton, ToolButton
-from kirigami_studio.gui.widgets.layouts import row
 from kirigami_studio.gui.widgets.number_field import DecimalField, decimal_field
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 
 #: Seconds from the flat sheet to fully turned while playing at the usual speed.
 PLAY_SECONDS = 4.0
 FRAME_MS = 16
+#: A bar narrower than this (pixels) has its slider below the buttons.
+NARROW = 380
 #: Radians from the last angle at which the sheet counts as open: less than a step of the slider.
 AT_LAST = 1e-3
 #: Part of a whole swing during which playing rests at each end, to let the eye arrive.
@@ -92,11 +93,14 @@ class DeploymentBar(QWidget):
             tip=tr("Deployment angle φ in degrees: 180° flat, 0° fully turned"),
             width=82,
         )
-        row(
-            *(self.play, self.options, (self.slider, 1), self.as_cut_button, self.ideal, self.number),
-            on=self,
-            spacing=4,
-        )
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid.setSpacing(4)
+        self._grid.setColumnStretch(2, 1)
+        for place, part in enumerate((self.play, self.options, None, self.as_cut_button, self.ideal, self.number)):
+            if part is not None:
+                self._grid.addWidget(part, 0, place)
+        self._grid.addWidget(self.slider, 0, 2)
         self._timer = QTimer(self)
         self._timer.setInterval(FRAME_MS)
         self._timer.timeout.connect(self._advance)
@@ -107,6 +111,14 @@ class DeploymentBar(QWidget):
         self.number.valueChanged.connect(lambda degrees: self.set_phi(math.radians(degrees)))
         self._on_phi(self.slider.phi)
         self.set_ready(False)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        """In a narrow bar the slider has a line of its own."""
+        super().resizeEvent(event)
+        place = (1, 0, 1, 6) if self.width() < NARROW else (0, 2, 1, 1)
+        if self._grid.getItemPosition(self._grid.indexOf(self.slider)) != place:
+            self._grid.removeWidget(self.slider)
+            self._grid.addWidget(self.slider, *place)
 
     @property
     def playing(self) -> bool:

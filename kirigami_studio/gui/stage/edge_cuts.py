@@ -203,7 +203,7 @@ def moved(sheet: Sheet, mouth: int, position: float) -> Sheet:
 def _placed(sheet: Sheet, mouth: int, position: float) -> Sheet:
     offsets = sheet.rim.offsets(*sheet.grid)
     offsets[mouth] = position - rim_table(*sheet.grid).even[mouth]
-    return replace_sheet(sheet, rim=Rim.moved(*sheet.grid, offsets))
+    return replace_sheet(sheet, rim=Rim.moved(*sheet.grid, offsets, sheet.rim.hinges))
 
 
 def with_sheet(design: PosedDesign, sheet: Sheet) -> PosedDesign:

@@ -50,7 +50,7 @@ def ratio_label(void: Void, count: int) -> str:
     if count > 1:
         return tr_n("Change ratio of {count} void", "Change ratio of {count} voids", count)
     row, column = void
-    return tr("Change ratio of void ({row}, {column})", row=row, column=column)
+    return tr("Change ratio of the void in row {row}, column {column}", row=row, column=column)
 
 
 def locked_sentence(count: int) -> str:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.gui.widgets.colour_scale import ColourScale
@@ -169,12 +170,34 @@ def smallest_parts(panels: FloatArray, trimmed: frozenset[int] = frozenset()) ->
     return found
 
 
+def _off_shape(shape: QPainterPath | None, middle: QPointF, width: float, height: float) -> list[QRectF]:
+    """Boxes that touch nothing of a shape, the nearest ones first."""
+    if shape is None:
+        return []
+    found = []
+    for reach in (0.0, 20.0, 45.0, 80.0):
+        for turn in range(8):
+            across, down = math.cos(0.25 * math.pi * turn), math.sin(0.25 * math.pi * turn)
+            x = middle.x() + across * (reach + 10.0 + 0.5 * width)
+            y = middle.y() + down * (reach + 10.0 + 0.5 * height)
+            box = QRectF(x - 0.5 * width, y - 0.5 * height, width, height)
+            if not shape.intersects(box):
+                found.append(box)
+    return found
+
+
 def paint_dimension(
-    painter: QPainter, ends: FloatArray, text: str, palette: Palette, occupied: list[QRectF]
+    painter: QPainter,
+    ends: FloatArray,
+    text: str,
+    palette: Palette,
+    occupied: list[QRectF],
+    shape: QPainterPath | None = None,
 ) -> QRectF | None:
     """Mark a short length by a line between ``ends`` (2, 2), pixels, and write its size beside it.
 
-    The text goes to the first free place around the line, which joins ``occupied``; None when there is none.
+    The text goes to the first free place around the line, which joins ``occupied``; None when there is none.  Where
+    one is near enough it lies off a ``shape``, neither over it nor in its holes, and a thin line leads to it.
     """
     (ax, ay), (bx, by) = ends.tolist()
     start, stop = QPointF(ax, ay), QPointF(bx, by)
@@ -184,10 +207,15 @@ def paint_dimension(
     metrics = QFontMetricsF(painter.font())
     width, height = metrics.horizontalAdvance(text) + 10.0, metrics.height() + 2.0
     middle = QPointF(0.5 * (ax + bx), 0.5 * (ay + by))
+    beside = []
     for dx, dy in ((1, -1), (1, 1), (-1, -1), (-1, 1), (1, -3), (-1, 3)):
         left = middle.x() + (8.0 if dx > 0 else -8.0 - width)
-        box = QRectF(left, middle.y() + 0.5 * dy * height + (4.0 * dy) - 0.5 * height, width, height)
+        beside.append(QRectF(left, middle.y() + 0.5 * dy * height + (4.0 * dy) - 0.5 * height, width, height))
+    for box in (*_off_shape(shape, middle, width, height), *beside):
         if not any(box.intersects(other) for other in occupied) and QRectF(painter.window()).contains(box):
+            if box not in beside:
+                painter.setPen(QPen(QColor(palette.text), 1.0))
+                painter.drawLine(middle, box.center())
             ink(painter, palette.text, fill=palette.surface)
             painter.drawRoundedRect(box, 4.0, 4.0)
             painter.drawText(box, int(Qt.AlignmentFlag.AlignCenter), text)

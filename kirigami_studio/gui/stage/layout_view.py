@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QFontMetrics, QMouseEvent, QPaintEngine, QPainter
+from PySide6.QtGui import QFontMetrics, QMouseEvent, QPaintEngine, QPainter, QPainterPath
 from PySide6.QtWidgets import QWidget
 
 from kirigami_studio.assembly.posed_pieces import LINE, PieceLook, PosedPieces, Shade, face_of, shaded
@@ -61,6 +61,7 @@ from kirigami_studio.gui.widgets.colour_scale import (
 from kirigami_studio.gui.widgets.fitted_text import fitted
 from kirigami_studio.gui.widgets.legends import Chip, clear_box, legend_boxes, paint_caption, paint_legend
 from kirigami_studio.gui.widgets.mismatch_items import (
+    VERSIONS,
     Mismatch,
     design_mismatch,
     difference_chips,
@@ -69,6 +70,7 @@ from kirigami_studio.gui.widgets.mismatch_items import (
     paint_mismatch,
     usual_chips,
 )
+from kirigami_studio.gui.widgets.paths import line_path
 from kirigami_studio.gui.widgets.readable import readable_width
 from kirigami_studio.gui.widgets.target_items import paint_target_line, paint_target_shape
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
@@ -369,7 +371,7 @@ class LayoutView(Canvas):
         titles = [tr(title) for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
         legends = bar_boxes(titles, metrics, self.width() - 10.0, self._bars_top())
         if legend:
-            chips = self._fitting([usual_chips(self.palette_, short) for short in (False, True)], metrics)
+            chips = self._fitting([usual_chips(self.palette_, brevity) for brevity in range(VERSIONS)], metrics)
             legends += legend_boxes(chips, metrics, self.width(), self.height())
         return clear_box(bounds, view, self.margin(), legends)
 
@@ -377,12 +379,12 @@ class LayoutView(Canvas):
         return CAPTION_HEIGHT if self.caption else 10.0
 
     def _fitting(self, versions: list[list[Chip]], metrics: QFontMetrics) -> list[Chip]:
-        """The first of these legends that fits into one row, else the last."""
-        for chips in versions:
-            rows = {box.top() for box in legend_boxes(chips, metrics, self.width(), self.height())}
-            if len(rows) <= 1 and self.width() >= NARROW:
-                return chips
-        return versions[-1]
+        """The first of these legends where it fits into one row, else the next one that fits into two, or the last."""
+        size = self.width(), self.height()
+        rows = [len({box.top() for box in legend_boxes(chips, metrics, *size)}) for chips in versions]
+        if rows[0] <= 1 and self.width() >= NARROW:
+            return versions[0]
+        return next((chips for chips, used in zip(versions[1:], rows[1:], strict=True) if used <= 2), versions[-1])
 
     def legend(self, metrics: QFontMetrics) -> list[tuple[Chip, QRectF]]:
         """What the labels at the bottom say, and where (pixels)."""
@@ -399,7 +401,7 @@ class LayoutView(Canvas):
         chips = found
         if self.areas is not None:
             areas, mm = self.areas, self.mm_per_unit
-            versions = [difference_chips(areas, mm, self.palette_, short) + found for short in (False, True)]
+            versions = [difference_chips(areas, mm, self.palette_, brevity) + found for brevity in range(VERSIONS)]
             chips = self._fitting(versions, metrics)
         return list(zip(chips, legend_boxes(chips, metrics, self.width(), self.height()), strict=True))
 
@@ -567,21 +569,24 @@ class LayoutView(Canvas):
         if Overlay.VOID_NUMBERS in self.overlays:
             tiles = transform.to_pixels(heat_tiles(panels, rows, columns))
             paint_numbers(painter, transform.to_pixels(voids).mean(axis=2), room_in(tiles), self.palette_, framed=True)
-        lengths: list[tuple[float, FloatArray]] = []
+        lengths: list[tuple[float, FloatArray, QPainterPath | None]] = []
         if self.areas is not None:
             gap = transform.to_pixels(self.areas.gap.ends)
             if np.linalg.norm(gap[1] - gap[0]) >= SHORTEST_GAP:
-                lengths.append((self.areas.gap.greatest, gap))
+                outer = None if self._target is None else transform.rings_to_pixels(self._target.rings)[0]
+                silhouette = None if outer is None else line_path(outer, closed=True)
+                lengths.append((self.areas.gap.greatest, gap, silhouette))
         if Overlay.SMALL_PARTS in self.overlays:
-            lengths += [(part.size, transform.to_pixels(part.ends(panels))) for part in self._rigid.small]
+            lengths += [(part.size, transform.to_pixels(part.ends(panels)), None) for part in self._rigid.small]
         occupied: list[QRectF] = []
-        for length, ends in lengths:
+        for length, ends, shape in lengths:
             paint_dimension(
                 painter,
                 ends,
                 readable_width(length * self.mm_per_unit),
                 self.palette_,
                 occupied,
+                shape,
             )
 
     @property

@@ -43,6 +43,7 @@ class EndsLine(QWidget):
             button.clicked.connect(lambda _=False, button=button: self.phi_wanted.emit(button.phi))
         self.passed.hide()
         self._named = self._low = False
+        self.set_low(False)
         self.show_states(None)
 
     def show_states(self, states: TwoStates | None) -> None:
@@ -64,6 +65,9 @@ class EndsLine(QWidget):
     def set_low(self, low: bool) -> None:
         """Leave room to the drawing in a low panel; the status line tells both matches, too."""
         self._low = low
+        policy = self.sizePolicy()
+        policy.setRetainSizeWhenHidden(not low)  # else the slider moves when the first design comes
+        self.setSizePolicy(policy)
         self.setVisible(self._named and not self._low)
 
 

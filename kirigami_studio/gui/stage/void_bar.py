@@ -116,11 +116,11 @@ def _selection_texts(voids: frozenset[Void], locked: frozenset[Void]) -> tuple[s
     """What the row says, longest first."""
     if len(voids) == 1:
         ((down, right),) = voids
-        short = tr("Void ({row}, {column})", row=down, column=right)
+        short = tr("Row {row}, column {column}", row=down, column=right)
         if voids <= locked:
-            long = tr("Void ({row}, {column}): locked (L unlocks)", row=down, column=right)
+            long = tr("Void in row {row}, column {column}: locked (L unlocks)", row=down, column=right)
         else:
-            long = tr("Void ({row}, {column}): drag, scroll, or press + and -", row=down, column=right)
+            long = tr("Void in row {row}, column {column}: drag, scroll, or press + and -", row=down, column=right)
         return long, short, f"({down}, {right})"
     if voids:
         return (tr_n("{count} void", "{count} voids", len(voids)),)

@@ -142,9 +142,9 @@ class VoidFacts:
         """The lines of the label at the pointer."""
         row, column = self.void
         if self.locked:
-            first = tr("Void ({row}, {column})   x {ratio:.3f}   locked", row=row, column=column, ratio=self.ratio)
+            first = tr("Row {row}, column {column}   x {ratio:.3f}   locked", row=row, column=column, ratio=self.ratio)
         else:
-            first = tr("Void ({row}, {column})   x {ratio:.3f}", row=row, column=column, ratio=self.ratio)
+            first = tr("Row {row}, column {column}   x {ratio:.3f}", row=row, column=column, ratio=self.ratio)
         angle, edges = math.degrees(self.angle), self._edges()
         return first, f"{number(angle, '.1f')}°   {edges}"
 
@@ -153,8 +153,8 @@ class VoidFacts:
         (row, column), angle, edges = self.void, math.degrees(self.angle), self._edges()
         if self.locked:
             return tr(
-                "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges}, "
-                "locked.",
+                "Void in row {row}, column {column}: ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges "
+                "{edges}, locked.",
                 row=row,
                 column=column,
                 ratio=self.ratio,
@@ -162,7 +162,8 @@ class VoidFacts:
                 edges=edges,
             )
         return tr(
-            "Void ({row}, {column}): ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges {edges}.",
+            "Void in row {row}, column {column}: ratio x {ratio:.3f}, angle {angle:.1f}° at its left corner, edges "
+            "{edges}.",
             row=row,
             column=column,
             ratio=self.ratio,

@@ -217,11 +217,14 @@ class PartPicker(QDialog):
                 self.join.add_choices((SEPARATE,))
             elif purpose is not Purpose.TARGET and offered >= 0:
                 self.join.removeItem(offered)
-            self.join.choose(Join.BRIDGE)
-            self.painted.setChecked(_as_painted(source))
+            strokes = read.strokes
+            self.join.choose(Join.BRIDGE if strokes is None else strokes.join)
+            self.painted.setChecked(_as_painted(source) if strokes is None else strokes.as_painted)
         self._fill_holes = None
         self.painted.setVisible(any(part.lines for part in source.parts))
-        self._fill(frozenset(source.usual) if closed else frozenset(part.number for part in source.parts))
+        usual = closed and strokes is None
+        every = frozenset(part.number for part in source.parts if not (closed and part.is_letter))
+        self._fill(frozenset(source.usual) if usual else every)
         self.view.show_drawing(read)
         self._remake()
         self.list.setFocus()

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QListWidgetItem, QWidget
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.stage.layout_items import target_pixmap
 from kirigami_studio.gui.widgets.layouts import column, label
-from kirigami_studio.gui.widgets.search_window import picture_list, search_field
+from kirigami_studio.gui.widgets.search_window import PictureList, search_field
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.outlines import silhouettes
 
@@ -27,7 +27,7 @@ class SilhouettePicker(QFrame):
         self.setObjectName("popup")
         self._listens = False
         self.search = search_field(tr("Search the library"))
-        self.list = picture_list("libraryList", tr("Library silhouettes"), PICTURE, QSize(104, 104))
+        self.list = PictureList("libraryList", tr("Library silhouettes"), PICTURE, QSize(104, 104))
         self.about = label(tr("Choose a silhouette"), wraps=True)
         column(self.search, (self.list, 1), self.about, on=self, margins=(12, 12, 12, 10))
         self._fill(palette)

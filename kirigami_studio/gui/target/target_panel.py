@@ -131,7 +131,7 @@ class TargetPanel(Card):
         super().__init__(tr("Target"), parent)
         self.view = TargetView()
         self.editing = False
-        self._reach_texts = ("", "")
+        self._reach_texts, self._turns_back = ("", ""), False
         self.tools = DrawingToolBar(self.view.context)
         self.refine = RefineBar()
         self.header.addWidget(self.tools.options)
@@ -142,11 +142,13 @@ class TargetPanel(Card):
         self.facts, self.size_ = ElidedLabel(), label()
         self.notes = label(name="warning", wraps=True)
         self.notes.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        self.reach, self.start_refusal, self.limit = (ElidedLabel(Qt.TextElideMode.ElideRight) for _ in range(3))
+        labels = (ElidedLabel(Qt.TextElideMode.ElideRight) for _ in range(4))
+        self.reach, self.start_refusal, self.limit, self.cutting = labels
         self.reach.setAccessibleDescription(tr("Details that the grid may miss"))
         self.start_refusal.setAccessibleDescription(tr("Why the next run would refuse the start"))
         self.limit.setAccessibleDescription(tr("What no closed sheet shows of the target"))
-        for warning in (self.reach, self.start_refusal, self.limit):
+        self.cutting.setAccessibleDescription(tr("Whether the sheet can be cut at this size, and for how long"))
+        for warning in (self.reach, self.start_refusal, self.limit, self.cutting):
             warning.setObjectName("warning")
             warning.setVisible(False)
         self.threshold, self.start, self.opened = ThresholdBar(), StartTile(), OpenedSizeRow()
@@ -157,7 +159,7 @@ class TargetPanel(Card):
         self.body.addWidget(self.tools)
         self.body.addLayout(row(self.start, (self.view, 1), spacing=8), 1)
         self.body.addLayout(row((self.facts, 1), self.size_))
-        warnings = (self.start_refusal, self.reach, self.limit)
+        warnings = (self.start_refusal, self.reach, self.limit, self.cutting)
         for part in (self.opened, *warnings, self.fill, self.refine, self.threshold, self.notes, self.loose):
             self.body.addWidget(part)
         self.view.context.selection_changed.connect(self._show_selection)
@@ -276,7 +278,7 @@ class TargetPanel(Card):
         reach = None if placed is None else reach_of(placed.outline, grid)
         self.view.show_reach(reach)
         known = placed is not None and placed.outline.unit == "mm"
-        self._reach_texts = ("", "")
+        self._reach_texts, self._turns_back = ("", ""), reach is not None and reach.turns_back > 0.0
         if placed is not None and reach is not None:
             self._reach_texts = reach_texts(reach, placed.outline, placed.scale if known else None)
         self._show_reach_text()
@@ -291,12 +293,20 @@ class TargetPanel(Card):
         self.limit.setText(sentence)
         self.limit.setToolTip(sentence)
         self.limit.setVisible(bool(sentence))
+        self._show_reach_text()
+
+    def show_cutting_time(self, sentence: str, brief: str) -> None:
+        """Say before a run that cutting takes hours, or that the sheet is too small; "" for neither."""
+        self.cutting.setText(sentence, brief)
+        self.cutting.setToolTip(sentence)
+        self.cutting.setVisible(bool(sentence))
 
     def _show_reach_text(self) -> None:
         whole, brief = self._reach_texts
         self.reach.setText(whole if self.editing else brief)
         self.reach.setToolTip(whole)
-        self.reach.setVisible(bool(whole))
+        said = self._turns_back and not self.limit.isHidden()  # the limit says the same of that notch
+        self.reach.setVisible(bool(whole) and not said)
 
     def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
         return QSize(250, 195)
@@ -337,7 +347,7 @@ class RefineBar(QWidget):
             parts += [label(tr(caption), own), (own, 1)]
         width = tr("Target width in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
         height = tr("Target height in mm; 3 in or 8.5 cm work too. The chain keeps proportions.")
-        length = partial(decimal_field, LengthField, "", 0.1, LARGEST_MM, suffix=tr(" mm"))
+        length = partial(decimal_field, LengthField, "", 0.1, LARGEST_MM, suffix=tr(" mm"), width=116)
         self.width_ = length(accessible=tr("Target width"), tip=width)
         self.height_ = length(accessible=tr("Target height"), tip=height)
         parts += [label(tr("Size"), self.width_), self.width_]

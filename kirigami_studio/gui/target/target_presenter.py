@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 
 from PySide6.QtCore import QObject
@@ -21,13 +23,20 @@ from kirigami_studio.gui.target.sketch_context import Change
 from kirigami_studio.gui.target.target_panel import DONE_HINT, TargetPanel
 from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.target.targeting import StartReader, Targeting
+from kirigami_studio.gui.widgets.readable import rough_time
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.starts import StartShape
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
+from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import size_of, target_as_cut
+from kirigami_studio.settings.design import USUAL_GRID
+from kirigami_studio.studio.cutting import expected_seconds, least_width_mm
 from kirigami_studio.studio.designing import limit_of
 from kirigami_studio.studio.two_states import flat_size, starts_as
+
+#: Seconds of cutting from which on it is said before a run.
+LONG_CUT = 2.0 * 3600.0
 
 
 class TargetPresenter(QObject):
@@ -51,6 +60,7 @@ class TargetPresenter(QObject):
         super().__init__(panel)
         self._panel, self._session, self._targeting = panel, session, targeting
         self._errors: list[Message] = []
+        self._grid: tuple[int, int] | None = None
         self._question: Message | None = None
         self._asked_in = 0  # which project the question is about
         self._offered: Outline | None = None
@@ -191,8 +201,44 @@ class TargetPresenter(QObject):
             self._panel.show_reach(document.settings.grid)
         limit = limit_of(document)
         self._panel.show_limit("" if limit is None else limit.text)
+        self._show_cutting_time(document)
         if document.guides != before.guides:
             self._panel.view.context.show_guides(document.guides)
+
+    def expect_grid(self, grid: tuple[int, int] | None) -> None:
+        """Take the grid that the next run will choose, None where that is not known."""
+        if grid != self._grid:
+            self._grid = grid
+            self._show_cutting_time(self._session.document)
+
+    def _show_cutting_time(self, document: Document) -> None:
+        """Warn before a run of a sheet too small for its connectors, or of hours of cutting."""
+        settings = document.settings
+        grid = (self._grid or USUAL_GRID) if settings.auto_grid else settings.grid
+        if document.target is None or document.candidates:
+            self._panel.show_cutting_time("", "")
+            return
+        cut, start = document.fabrication, settings.start
+        with suppress(KirigamiError):  # a material is gone, or the start folds, which the plan and the run tell
+            cells = width_in_cells(grid, RECTANGLE if start.is_auto else start)
+            needed = least_width_mm(cut, cells)
+            if cut.width_mm < needed:
+                sentence = tr(
+                    "This size is too small for connectors in this material on {rows} \N{MULTIPLICATION SIGN} "
+                    "{columns} voids: make it {times:.1f} times larger, or take fewer voids.",
+                    rows=grid[0],
+                    columns=grid[1],
+                    times=math.ceil(10.0 * needed / cut.width_mm) / 10.0,
+                )
+                self._panel.show_cutting_time(sentence, tr("Too small for this material."))
+                return
+        seconds = expected_seconds(cut, grid)
+        if seconds < LONG_CUT:
+            self._panel.show_cutting_time("", "")
+            return
+        time = rough_time(seconds)
+        sentence = tr("The machine will cut for about {time}. A smaller sheet, or fewer voids, takes less.", time=time)
+        self._panel.show_cutting_time(sentence, tr("Cutting takes about {time}.", time=time))
 
     def _show_target(self, document: Document) -> None:
         panel = self._panel
@@ -202,6 +248,7 @@ class TargetPresenter(QObject):
         panel.show_target(target, picture, drawing, document.target)
         self.reshaping.follow()
         panel.show_reach(document.settings.grid)
+        self._show_cutting_time(document)
 
 
 def _moved(document: Document, before: Document) -> bool:

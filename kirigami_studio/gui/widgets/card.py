@@ -23,6 +23,8 @@ from kirigami_studio.gui.widgets.number_field import number_field
 from kirigami_studio.gui.widgets.theme import Palette
 
 TOOL_ICON = QSize(18, 18)
+#: Pixels of a title that are shown in any window; a header plans no more than this share of its width for one.
+LEAST_TITLE, TITLE_SHARE = 72, 0.4
 INSET = 12
 
 
@@ -33,8 +35,7 @@ class Card(QFrame):
         super().__init__(parent)
         self.setObjectName("card")
         self.setAccessibleName(title)
-        self.title = label(title, name="cardTitle")
-        self.title.setMinimumHeight(30)
+        self.title = CardTitle(title)
         self.header, self.body = row((self.title, 1), spacing=4), column(spacing=8)
         column(self.header, (self.body, 1), on=self, spacing=8, margins=(INSET, 8, right_inset, INSET))
 
@@ -111,6 +112,20 @@ class ElidedLabel(QLabel):
         painter.end()
 
 
+class CardTitle(ElidedLabel):
+    """What a card is about; a long name ends in an ellipsis, and never makes the card wider."""
+
+    def __init__(self, title: str) -> None:
+        super().__init__(Qt.TextElideMode.ElideRight)
+        self.setObjectName("cardTitle")
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        self.setMinimumHeight(30)
+        self.setText(title)
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802 - Qt's name
+        return QSize(min(self.sizeHint().width(), LEAST_TITLE), super().minimumSizeHint().height())
+
+
 class FittingLabel(QLabel):
     """Shows the longest of several texts that fits, or none."""
 
@@ -164,9 +179,9 @@ class ScrolledWhenShort(QScrollArea):
         room, free = self.height(), 0
         if self._content.sizeHint().height() > room:
             parts = [part for part in self._content.findChildren(QWidget) if _in_row(part, self._content)]
-            spans = [(part.mapTo(self._content, QPoint()).y(), part.height()) for part in parts]
-            ends = [top + height for top, height in spans if top + height <= room]
-            whole = [end for end in ends if not any(top < end < top + height for top, height in spans)]
+            spans = [_span(part, self._content) for part in parts]
+            ends = [bottom for _, bottom in spans if bottom <= room]
+            whole = [end for end in ends if not any(top < end < bottom for top, bottom in spans)]
             free = room - max(whole, default=room)
         if free != self.viewportMargins().bottom():
             self.setViewportMargins(0, 0, 0, free)
@@ -184,6 +199,14 @@ def _in_row(part: QWidget, content: QWidget) -> bool:
     """Whether a layout has put it where it stands, and it is no pane that holds others."""
     holder = part.parentWidget()
     return part.isVisibleTo(content) and part.layout() is None and holder is not None and holder.layout() is not None
+
+
+def _span(part: QWidget, content: QWidget) -> tuple[int, int]:
+    """Upper and lower edge (pixels) of a part of the content; a caption ends where its field does."""
+    field = part.buddy() if isinstance(part, QLabel) else None
+    both = (part,) if field is None or not field.isVisibleTo(content) else (part, field)
+    tops = [one.mapTo(content, QPoint()).y() for one in both]
+    return min(tops), max(top + one.height() for top, one in zip(tops, both, strict=True))
 
 
 def compact(box: QAbstractSpinBox, width: int = 62) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QEvent, QRect, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QRect, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QHideEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QLabel, QPlainTextEdit, QSizePolicy, QWidget
 
@@ -73,7 +73,10 @@ class MessageBar(QFrame):
 
     def _lay_out(self) -> None:
         parts = (self.details, self.previous, self.position, self.next, self.close_all_button, self.copy)
-        self._buttons = row(..., self._actions, *parts, self.close_button, spacing=8)
+        self._buttons = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._buttons.setSpacing(8)
+        self._buttons.addLayout(row(..., self._actions, spacing=0), 1)
+        self._buttons.addLayout(row(..., *parts, self.close_button, spacing=8))
         self._line.setSpacing(8)
         self._line.addLayout(row(self.icon, (self.sentence, 1), spacing=8), 1)
         self._line.addLayout(self._buttons)
@@ -115,14 +118,23 @@ class MessageBar(QFrame):
 
     def set_palette(self, palette: Palette) -> None:
         self._palette = palette
+        unfolded = self.details.isChecked()
         self._go(self._at)
+        self.details.setChecked(unfolded)
 
     def lay_over(self, room: QRect) -> None:
         """Lie over this part of the parent, from its top down as far as the message needs.
 
-        Buttons stand beside the sentence, or below it where that takes less height.
+        Buttons stand beside the sentence, or below it where that takes less height; the answers to a question stand
+        above the others where all of them are too wide for a line.
         """
         across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+        halves = [self._buttons.itemAt(place) for place in (0, 1)]
+        answers, others = (half.sizeHint() if half is not None else QSize(0, 0) for half in halves)
+        margins = self.contentsMargins() if (layout := self.layout()) is None else layout.contentsMargins()
+        line = answers.width() + self._buttons.spacing() + others.width()
+        wide = room.width() - margins.left() - margins.right() - 2 * self.frameWidth()
+        self._buttons.setDirection(across if line <= wide else down)
         buttons = self._buttons.sizeHint()
         # Room for the sentence below nothing but the icon, and what of it the buttons would take.
         words = room.width() - self.icon.sizeHint().width() - 4 * self._line.spacing()
@@ -131,7 +143,6 @@ class MessageBar(QFrame):
         direction = across if max(beside, buttons.height()) <= below else down
         if direction is not self._line.direction():
             self._line.setDirection(direction)
-        layout = self.layout()
         needed = 0 if layout is None else layout.totalHeightForWidth(room.width())
         self.setGeometry(room.x(), room.y(), room.width(), max(needed, room.height()))
 
@@ -163,7 +174,8 @@ class MessageBar(QFrame):
         colour = self._palette.accent if message.tone in (Tone.HINT, Tone.DONE) else self._palette.warning
         self.icon.setAccessibleName(tr(TONES[message.tone]))
         self.icon.setPixmap(icons.pixmap(message.tone.value, colour, 20, self.devicePixelRatioF()))
-        if message.tone in (Tone.HINT, Tone.DONE) and not message.actions and self.isVisible():
+        passes = message.passing or not message.actions
+        if message.tone in (Tone.HINT, Tone.DONE) and passes and self.isVisible():
             self._fading.start()
         self._show_actions(message)
         self.setProperty("tone", message.tone.value)

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 #: Places on each boundary at which the distance is measured, beside its corners.
 STATIONS = 256
 TINT_ALPHA = 64
+#: Ways to say in a legend how sheet and target differ: whole, without shares, without the most, without areas.
+VERSIONS = 4
 #: Horizontal distance of hatch lines, pixels.
 STRIPE_STEP = 8
 
@@ -137,24 +139,28 @@ def _stations(boundary: BaseGeometry) -> npt.NDArray[np.object_]:
     return np.concatenate([np.atleast_1d(points) for points in along])
 
 
-def difference_chips(areas: Mismatch, mm_per_unit: float, palette: Palette, short: bool = False) -> list[Chip]:
-    """What the legend says: both areas, and the distance of the boundaries on average and at most."""
+def difference_chips(areas: Mismatch, mm_per_unit: float, palette: Palette, brevity: int = 0) -> list[Chip]:
+    """What the legend says: both areas, and the distance of the boundaries on average and at most.
+
+    ``brevity`` is a number below ``VERSIONS``: the larger, the less is said.
+    """
     mm2 = areas.target_area * mm_per_unit**2
     shares = areas.missing_share, areas.extra_share
-    return _chips(shares, mm2, (areas.gap.mean * mm_per_unit, areas.gap.greatest * mm_per_unit), palette, short)
+    return _chips(shares, mm2, (areas.gap.mean * mm_per_unit, areas.gap.greatest * mm_per_unit), palette, brevity)
 
 
-def usual_chips(palette: Palette, short: bool) -> list[Chip]:
+def usual_chips(palette: Palette, brevity: int) -> list[Chip]:
     """A legend as wide as legends usually are, to keep room for one before its numbers are known."""
-    return _chips((0.01, 0.01), 12345.0, (0.55, 5.55), palette, short)
+    return _chips((0.01, 0.01), 12345.0, (0.55, 5.55), palette, brevity)
 
 
 def _chips(
-    areas: tuple[float, float], mm2: float, off_mm: tuple[float, float], palette: Palette, short: bool
+    areas: tuple[float, float], mm2: float, off_mm: tuple[float, float], palette: Palette, brevity: int
 ) -> list[Chip]:
     missing, extra = (readable_area(mm2 * share) for share in areas)
-    off = tr("off by {mean} (max {most})", mean=readable_width(off_mm[0]), most=readable_width(off_mm[1]))
-    if short:
+    mean, most = (readable_width(one) for one in off_mm)
+    off = tr("off by {mean} (max {most})", mean=mean, most=most) if brevity < 2 else tr("off by {mean}", mean=mean)
+    if brevity:
         texts = tr("missing {area}", area=missing), tr("extra {area}", area=extra)
     else:
         shares = 100 * areas[0], 100 * areas[1]
@@ -162,7 +168,8 @@ def _chips(
             tr("missing {share:.1f} %, {area}", share=shares[0], area=missing),
             tr("extra {share:.1f} %, {area}", share=shares[1], area=extra),
         )
-    return [Chip((palette.missing,), texts[0]), Chip((palette.extra,), texts[1]), Chip((palette.text,), off)]
+    chips = [Chip((palette.missing,), texts[0]), Chip((palette.extra,), texts[1]), Chip((palette.text,), off)]
+    return chips[2:] if brevity == VERSIONS - 1 else chips
 
 
 def paint_mismatch(painter: QPainter, areas: Mismatch, transform: ViewTransform, palette: Palette) -> None:

@@ -62,6 +62,13 @@ def readable_time(seconds: float) -> str:
     return tr("{hours:.1f} h", hours=seconds / 3600)
 
 
+def rough_time(seconds: float) -> str:
+    """An estimated time in whole minutes up to an hour and a half, then in whole hours."""
+    if seconds < 90.0 * 60.0:
+        return tr("{minutes:.0f} min", minutes=max(seconds / 60.0, 1.0))
+    return tr("{hours:.0f} h", hours=seconds / 3600.0)
+
+
 def readable_range(low: float, high: float) -> str:
     """A time that is known within bounds, in one unit; one number where both read alike."""
     if readable_time(low) == readable_time(high):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
+from PySide6.QtGui import QKeyEvent, QKeySequence, QResizeEvent, QShortcut
 from PySide6.QtWidgets import QHeaderView, QLineEdit, QListView, QListWidget, QTreeWidget, QTreeWidgetItem, QWidget
 
 from kirigami_studio.gui.widgets.layouts import label
@@ -23,18 +23,31 @@ def search_field(prompt: str) -> QLineEdit:
     return field
 
 
-def picture_list(name: str, accessible: str, picture: QSize, card: QSize) -> QListWidget:
-    """A list of pictures with their names below them, in a grid that fills the width."""
-    made = QListWidget()
-    made.setObjectName(name)
-    made.setAccessibleName(accessible)
-    made.setViewMode(QListView.ViewMode.IconMode)
-    made.setMovement(QListView.Movement.Static)
-    made.setResizeMode(QListView.ResizeMode.Adjust)
-    made.setIconSize(picture)
-    made.setGridSize(card)
-    made.setWordWrap(True)
-    return made
+class PictureList(QListWidget):
+    """Pictures with their names below them, in a grid of cards at least so large that fills the width."""
+
+    def __init__(self, name: str, accessible: str, picture: QSize, card: QSize) -> None:
+        super().__init__()
+        self._card = card
+        self.setObjectName(name)
+        self.setAccessibleName(accessible)
+        self.setViewMode(QListView.ViewMode.IconMode)
+        self.setMovement(QListView.Movement.Static)
+        self.setResizeMode(QListView.ResizeMode.Adjust)
+        self.setIconSize(picture)
+        self.setWordWrap(True)
+        self._fill_width()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
+        super().resizeEvent(event)
+        self._fill_width()
+
+    def _fill_width(self) -> None:
+        width = self.width() - 2 * self.frameWidth() - self.verticalScrollBar().sizeHint().width()
+        columns = max(width // self._card.width(), 1)
+        cell = QSize(max(width // columns - 1, self._card.width()), self._card.height())
+        if cell != self.gridSize():
+            self.setGridSize(cell)
 
 
 class SearchWindow(QWidget):

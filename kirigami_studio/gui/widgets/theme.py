@@ -125,7 +125,7 @@ COLOURS: dict[str, tuple[Any, Any]] = {
     "relief": ("#008a66", "#2fc79d"),
     "engraved": ("#b0126a", "#ff8cc6"),
     "current_cut": ("#ffb000", "#ffe14d"),
-    "good": ("#1a7f4b", "#4fc98f"),
+    "good": ("#177645", "#4fc98f"),
     "bad": ("#b3261e", "#ff8d83"),
 }
 #: Shades by role, light and dark.

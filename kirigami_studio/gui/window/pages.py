@@ -41,7 +41,7 @@ WORDS = {
 SHARES = {
     WindowPage.SHAPE: ((1.0, 284, 9999), (0.27, 322, 380)),
     WindowPage.DESIGN: ((0.225, 284, 340), (0.25, 322, 372)),
-    WindowPage.MAKE: ((0.25, 336, 380), (0.35, 330, 900)),
+    WindowPage.MAKE: ((0.25, 336, 440), (0.35, 330, 900)),
 }
 #: Largest widths of the button that starts a run, and of the second target, pixels.
 BUTTON, SECOND = 340, 420

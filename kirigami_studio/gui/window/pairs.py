@@ -12,7 +12,7 @@ from kirigami_studio.foundation.words import mark, tr
 from kirigami_studio.gui.session.queue import JobCallbacks, JobQueue, LatestJob
 from kirigami_studio.gui.stage.layout_items import states_pixmap
 from kirigami_studio.gui.widgets.layouts import column, label
-from kirigami_studio.gui.widgets.search_window import picture_list
+from kirigami_studio.gui.widgets.search_window import PictureList
 from kirigami_studio.gui.widgets.theme import LIGHT, Palette
 from kirigami_studio.studio.projects import Pair, reading_pairs
 from kirigami_studio.studio.two_states import TwoStates
@@ -35,7 +35,7 @@ class PairList(QWidget):
         self._undrawn: list[int] = []
         self._drawing = QTimer(self, singleShot=True, interval=0)  # one picture for each turn of the window
         self._drawing.timeout.connect(self._draw_next)
-        self.list = picture_list("pairList", tr("Pairs of shapes"), PICTURE, CARD)
+        self.list = PictureList("pairList", tr("Pairs of shapes"), PICTURE, CARD)
         self.list.setMinimumHeight(CARD.height())
         self.about = label(tr(ABOUT), wraps=True)
         column(self.about, (self.list, 1), on=self, spacing=4)

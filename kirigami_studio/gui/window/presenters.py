@@ -225,6 +225,7 @@ class Presenters(QObject):
     def _connect_files(self, pasting: PasteReader) -> None:
         panel, services, dialogs, files = self._pages.fabrication, self._services, self._dialogs, self._files
         panel.materials_wanted.connect(dialogs.show_materials)
+        self._pages.cuts.generate.clicked.connect(services.generation.generate)
         panel.export_wanted.connect(files.export)
         panel.exports.all_wanted.connect(files.export_all)
         panel.exports.print_wanted.connect(dialogs.show_print)
@@ -233,6 +234,7 @@ class Presenters(QObject):
         services.exporter.exported.connect(dialogs.show_report)
         services.exporter.open_wanted.connect(dialogs.open_in_program)
         services.project.recovery.recover_wanted.connect(files.recover)
+        services.project.recovery.left_behind.connect(self._pages.welcome.offer_recovery)
         for changed in (services.project.stock.added, dialogs.materials_changed):
             changed.connect(self.making.reload_materials)
         pasting.file_wanted.connect(files.open)
@@ -258,6 +260,7 @@ class Presenters(QObject):
         self.stage.show_run()
         self.making.show_run()
         self.run.show_run(total)
+        self._offer_run()
         self.parts.show_document(self._services.session.document)
         self.voids.refresh()
 
@@ -267,6 +270,7 @@ class Presenters(QObject):
         self.all_designs.show_run()
         self.stage.show_idle()
         self.run.show_idle()
+        self._offer_run()
         self.parts.show_document(self._services.session.document)
         self.voids.refresh()
 
@@ -278,11 +282,18 @@ class Presenters(QObject):
         self.target.show_document(document)
         self.stage.show_document()
         self.making.show_document(document)
+        self._offer_run()
         self.run.show_document(document)
         self.parts.show_document(document)
         self.start.show()
         self.voids.refresh()
         self._pages.target.opened.show_size(size_of(document), follows=document.fabrication.opened_mm is not None)
+
+    def _offer_run(self) -> None:
+        """Offer a run beside the empty plan, too: the page Make has no other way to one."""
+        document = self._services.session.document
+        ready = document.target is not None and not document.candidates and not self._services.run.running
+        self._pages.cuts.offer_run(ready)
 
     def _show_design(self, entry: Entry | None) -> None:
         """Another design is on the stage, or none."""
@@ -313,6 +324,7 @@ class Presenters(QObject):
             None if reading is None else reading.grid, "" if reading is None else reading.reason
         )
         pages.target.show_start_refusal("" if reading is None else reading.start_refusal)
+        self.target.expect_grid(None if reading is None else reading.grid)
         if reading is not None and reading.grid is not None and settings.auto_grid:
             pages.target.show_reach(reading.grid)
         self.start.show()

@@ -24,7 +24,7 @@ from kirigami_studio.gui.stage.layout_view import USUAL_WIDTH_MM, FaultTour, Lay
 from kirigami_studio.gui.stage.plots_panel import PlotsPanel
 from kirigami_studio.gui.stage.slider_lines import AsCutLine, EndsLine
 from kirigami_studio.gui.stage.void_bar import VoidBar
-from kirigami_studio.gui.widgets.card import INSET, Card, FittingLabel, SwitchButton, ToolButton
+from kirigami_studio.gui.widgets.card import INSET, TITLE_SHARE, Card, FittingLabel, SwitchButton, ToolButton
 from kirigami_studio.gui.widgets.layouts import column, plain_pane
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.studio.as_cut import AsCut
@@ -34,8 +34,7 @@ from kirigami_studio.studio.two_states import TwoStates, shown_flat_match, shown
 
 #: A stage at least this wide (pixels) has its plots at the side, a narrower one below.
 WIDE = 640
-#: A stage lower than this (pixels) leaves room to the drawing: one line for the worst problem, none for the slider's
-#: ends.
+#: A stage lower than this (pixels) leaves room to the drawing: no line for the slider's ends.
 LOW = 630
 #: Pixels between the title and the numbers at least.
 GAP = 12
@@ -387,7 +386,8 @@ class StagePanel(Card):
         switches = (self.before, self.hand, self.overlays_button, self.plots_switch)
         buttons = [self.trim, *switches, *optional, self.whole]
         used = sum(button.sizeHint().width() + self.header.spacing() for button in buttons) + 14
-        room = self.width() - 2 * INSET - used - self.title.sizeHint().width() - GAP
+        title = min(self.title.sizeHint().width(), round(TITLE_SHARE * self.width()))
+        room = self.width() - 2 * INSET - used - title - GAP
         for button in (self.whole, *optional):  # keys, menus and the double-click stay
             fits = room + GAP >= 2 * self.header.spacing()
             button.setVisible(fits)
@@ -444,8 +444,7 @@ class StagePanel(Card):
         self._fit_numbers()
         super().resizeEvent(event)
         self._place_plots()
-        for part in (self.verdict, self.ends):
-            part.set_low(self.height() < LOW)
+        self.ends.set_low(self.height() < LOW)
         self.body.activate()
 
     def _update_overlays(self) -> None:

@@ -110,6 +110,14 @@ class WelcomePage(Card):
             button.clicked.connect(actions[name].trigger)
             self.offers[name] = button
             self._grid.addWidget(button, *divmod(place, 2))
+        self.offer_recovery(False)
+
+    def offer_recovery(self, left: bool) -> None:
+        """Offer unsaved work where an earlier session is known to have left some."""
+        self.offers["recover"].setVisible(left)
+        sample = self.offers["sample"]
+        self._grid.removeWidget(sample)
+        self._grid.addWidget(sample, 1, 0, 1, 1 if left else 2)
 
     @property
     def ready(self) -> bool:

@@ -387,15 +387,42 @@ def judge(arguments: argparse.Namespace) -> int:
     line, grid = ProgressLine(), parse_grid(arguments.grid)
     targets = _target_sets(arguments, arguments.exact)
     figures: dict[str, dict[str, object]] = {family: {} for family in targets}
+    judgements: dict[tuple[str, str], problem.Judgement] = {}
+    given = " ".join(Path(target).name for target in arguments.targets or ())
     sentences = []
+    board = None if arguments.leaderboard is None else _leaderboard(Path(arguments.leaderboard))
     for source in dict.fromkeys(arguments.generators):
         called = _imported(source) if ":" in source else problem.baseline(source, arguments.seed, grid)
         for family, outlines in targets.items():
             line.show(f"{family}: {source}")
             judged = problem.judge(called, outlines, grid)
-            figures[family][source] = judged.to_json()
+            figures[family][source], judgements[given or family, source] = judged.to_json(), judged
             sentences.append(f"{family}, {source}: {judged.sentence}")
+    if board is not None:
+        made = plain(problem.entered(board, judgements, grid, arguments.seed))
+        write_atomically(Path(arguments.leaderboard), f"{json.dumps(made, indent=2)}\n".encode())
     return _print_figures(arguments, line, {"grid": list(grid), "families": figures}, sentences)
+
+
+def _leaderboard(path: Path) -> dict[str, object]:
+    """The leaderboard in a file, empty where there is none.
+
+    Raises
+    ------
+    UsageError
+        It cannot be read, or is something else.
+    """
+    from kirigami_studio.lab import problem
+
+    if not path.exists():
+        return {}
+    try:
+        board = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise UsageError("problem.not_a_leaderboard") from error
+    if not isinstance(board, dict):
+        raise UsageError("problem.not_a_leaderboard")
+    return problem.entered(board, {}, (0, 0), 0)
 
 
 def _imported(source: str) -> Generator:

@@ -429,8 +429,12 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="MODULE:CALLABLE (targets -> tables of ratios), a baseline (uniform, cma-es, swarm, local-search, "
                     "powell, fit, sample, sample-fit, a bundled variant), or a .safetensors file of a training run"),
         *targets_of_a_suite(50),
-        EXACT, GRID, SEED, *FIGURES,
+        EXACT, GRID, SEED,
+        option("--leaderboard", default=None, metavar="FILE",
+               help="also enter the figures in this .json file, which lists generators on the same targets"),
+        *FIGURES,
     ), ("kirigami-studio benchmark judge mine:generate prior",
+        "kirigami-studio benchmark judge mine:generate --leaderboard docs/benchmark/leaderboard.json",
         "kirigami-studio benchmark judge swarm uniform --count 5 --families drawn --json")),
     SubCommand("benchmark grpo", "judge what GRPO made of a prior, one sample a target (the paper's Table 3)",
                "lab.cli.benchmarks:grpo", (

@@ -34,6 +34,7 @@ from kirigami_studio.lab.demonstrations.board_states import LONG_NAME, BoardStat
 from kirigami_studio.lab.demonstrations.offscreen_session import DESIGNS, SessionError, click, hover, main, press_key
 from kirigami_studio.project import recovery
 from kirigami_studio.project.document import Mark
+from kirigami_studio.project.labels import LONGEST_NAME
 from kirigami_studio.project.recovery import RecoveryNote
 from kirigami_studio.studio.targets import outline_of
 
@@ -161,7 +162,9 @@ class StateSheet(BoardStates):
             raise SessionError("There is no design to name.")
         label = document.label_of(session.stage.candidate)
         if label is not None:
-            window.services.labels.set(label, LONG_NAME, "The lobes are even; cut this one for the fair.")
+            window.services.labels.set(
+                label, LONG_NAME[:LONGEST_NAME], "The lobes are even; cut this one for the fair."
+            )
         renamed = replace(document.target, name=LONG_NAME)
         session.restart(replace(session.document, target=renamed), Path(f"{LONG_NAME}.kiri"))
         window.services.fabrication.change(machine="cricut-maker", material="polypropylene-co2")

@@ -22,6 +22,7 @@ from kirigami_studio.assembly.rim_pieces import shortest_links
 from kirigami_studio.assembly.shaping import Shaping, less
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.posed_design import PosedDesign
+from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import IntArray
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.outline import Outline
@@ -346,6 +347,31 @@ def test_that_pins_without_a_wall_go_before_needless_ones() -> None:
     made = Shaping.of(deployment, cell_mm, phi, BRADS, needless=needless)
     assert made.faults == 0 and len(weak) == 1 and not weak & set(_pins_of(made).tolist())
     assert len(_pins_of(made)) < len(nodes) - 1 and freedom(made.motion) == 1
+
+
+def test_that_panels_the_target_shows_nothing_of_go_where_the_motion_does_not_need_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    design, _ = pinwheel(4, 4)
+    less_a_corner = shapely.Polygon(np.array([(0, 0), (1, 0), (1, 0.6), (0.6, 1), (0, 1)]) - 0.5)
+    target, scale = Outline.from_points(less_a_corner.exterior.coords[:-1], "square"), less_a_corner.area**-0.5
+    x, y = shapely.get_coordinates(less_a_corner.centroid)[0] * -scale
+    design = replace(design, pose=Similarity(scale, 0.0, (float(x), float(y))).compose(design.pose))
+    sizes = replace(BRADS, least_flat=0.9)
+    plan = pinned(design, target, 200.0, sizes)
+    assert len(plan.assembly.pieces) == 24
+    motion = LayerMotion.of(plan.assembly.deployment, plan.assembly.cell_mm, 0.0)
+    panels, nodes = plan.assembly.numbers, [hinge.node for hinge in plan.assembly.hinges]
+    hinged = motion.hinged & np.isin(motion.nodes, nodes)
+    left = {"panel", "corners", "nodes", "layer", "plane", "drift", "sense"}
+    some = replace(motion, hinged=hinged[panels], **{name: getattr(motion, name)[panels] for name in left})
+    assert freedom(some) == 1
+    monkeypatch.setattr("kirigami_studio.assembly.pinned.CRUMBS", 0.0)
+    whole = pinned(design, target, 200.0, sizes)
+    assert len(whole.assembly.pieces) == 25
+    fewer, every = check_pinned(plan, 9), check_pinned(whole, 2)
+    assert fewer.figures.match > every.figures.match + 0.04
+    assert fewer.figures.flat_match > 0.9 and not codes(fewer)
 
 
 def _pins_of(shaping: Shaping) -> IntArray:

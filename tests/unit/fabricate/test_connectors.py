@@ -84,7 +84,8 @@ def test_that_a_cut_without_room_for_its_connectors_is_named_with_its_length_and
         plan_cuts(design, 20.0, connector_mm=3.0, kerf_mm=0.1)
     sentence = str(refusal.value)
     assert re.search(
-        r"edge cut at void \(\d, \d\) is 2\.86 mm long, but a connector of 3 mm and a kerf of 0\.1 mm", sentence
+        r"edge cut at the void in row \d, column \d is 2\.86 mm long, but a connector of 3 mm and a kerf of 0\.1 mm",
+        sentence,
     )
     factor = float(sentence.split("at least ")[1].split(" times")[0])
     plan_cuts(design, 20.0 * factor, connector_mm=3.0, kerf_mm=0.1)

@@ -75,6 +75,18 @@ def test_that_a_width_that_no_share_of_its_room_fits_is_tried_twice(make_design:
     assert 0 < len(rounds) <= 2 * ROUNDS
 
 
+@pytest.mark.parametrize(("seed", "span", "share", "most"), [(1, 3.7, 0.4, 36), (2, 2.6, 0.6, 36)])
+def test_that_searches_without_prospects_end_early_and_the_largest_share_that_fits_is_found(
+    seed: int, span: float, share: float, most: int, make_design: MakeDesign
+) -> None:
+    """Rounds are the work: those of broad connectors on many voids took up to 50, and a minute."""
+    design, rounds = make_design(7, 7, seed=seed, spread=0.1), []
+    table = cut_table(7, 7)
+    made = with_room(design, WIDTH, np.full(table.hinge_count, span), table, (), lambda: rounds.append(1))
+    assert facing_mm(made).min() == pytest.approx(FACING_SPANS * share * span, rel=5e-3)
+    assert len(rounds) <= most
+
+
 def test_that_sheets_with_room_are_left_alone(make_design: MakeDesign) -> None:
     design = make_design(5, 6, seed=1, spread=0.4)
     table = cut_table(5, 6)

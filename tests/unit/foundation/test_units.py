@@ -51,3 +51,16 @@ def test_that_captions_and_tooltips_say_the_unit_and_its_range(monkeypatch: pyte
     assert ShownUnit.words("A width in mm; 3 in work too.") == "A width in inches; 3 in work too."
     assert ShownUnit.words("Width, mm (5 to 3000).") == "Width, in (0.197 to 118)."
     assert tr("{mm:.0f} mm", mm=254.0) == "10.00 in"
+
+
+def test_that_lengths_of_cuts_from_a_metre_on_are_metres_in_sentences_as_in_the_window() -> None:
+    """Before, the report had a cut length of 19.16 m above one of 19160.123 mm."""
+    said = fill(
+        "The cut length is {length_mm:.3f} mm; {planned_mm:.3f} mm were planned.",
+        {"length_mm": 19160.123, "planned_mm": 999.9},
+    )
+    assert said == "The cut length is 19.1601 m; 999.900 mm were planned."
+    assert fill("{cut_length_mm:.0f} mm", {"cut_length_mm": 1234.0}) == "1.23 m"
+    # Sizes and places stay in mm, and so does what is no number.
+    assert fill("{width_mm:g} mm at x = {x:.1f} mm", {"width_mm": 1500.0, "x": 2000.0}) == "1500 mm at x = 2000.0 mm"
+    assert fill("{length_mm} mm", {"length_mm": "none"}) == "none mm"

@@ -455,3 +455,36 @@ def test_that_more_pieces_than_anybody_cuts_are_refused(svg) -> None:
     source = read_parts(svg(body, MM))
     with refused(TargetError, "parts.too_many_sheets"):
         merged(source, source.parts, Merging(Join.EACH))
+
+
+STAR = "50,14 58,39 84,39 63,55 71,80 50,65 29,80 37,55 16,39 42,39"
+
+
+def test_that_a_white_star_on_a_red_page_is_read_and_the_page_can_be_chosen(svg) -> None:
+    """Before, the page was read, and nothing of the star was left."""
+    page = f'<rect width="100" height="100" fill="#c81e1e"/><polygon points="{STAR}" fill="#fff"/>'
+    source = read_parts(svg(page, 'width="100mm" height="100mm" viewBox="0 0 100 100"'))
+    assert len(source.parts) == 2 and [source.parts[number - 1].colour for number in source.usual] == ["#ffffff"]
+    assert source.parts[0].is_aside and source.parts[0].region.area == pytest.approx(1e4)
+    # A badge beside which the page is seen is a shape, not a ground; so is a page with a speck on it.
+    badge = page.replace('width="100" height="100"', 'x="10" y="10" width="80" height="80"')
+    speck = '<rect width="100" height="100" fill="#c81e1e"/><circle cx="90" cy="90" r="2" fill="#fff"/>'
+    for body in (badge, speck):
+        taken = read_parts(svg(body, 'width="100mm" height="100mm" viewBox="0 0 100 100"'))
+        assert taken.parts[0].number in taken.usual and not taken.parts[0].is_aside
+
+
+def test_that_a_white_star_on_a_red_disc_in_a_picture_is_a_part(tmp_path: Path) -> None:
+    """Before, it was a hole of the disc and nothing else."""
+    page = Image.new("RGB", (240, 240), "white")
+    draw = ImageDraw.Draw(page)
+    draw.ellipse((15, 15, 225, 225), fill=(200, 20, 30))
+    points = [tuple(2.4 * float(number) for number in pair.split(",")) for pair in STAR.split()]
+    draw.polygon(points, fill="white")
+    path = tmp_path / "badge.png"
+    page.save(path)
+    source = read_parts(path)
+    disc, star = source.parts
+    assert source.usual == (disc.number,) and star.is_aside
+    assert star.region.area == pytest.approx(Polygon(points).area, rel=0.05)
+    assert len(merged(source, (star,), Merging()).outline.holes) == 0

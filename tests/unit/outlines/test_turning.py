@@ -16,7 +16,7 @@ from kirigami_studio.lattice.topology import topology
 from kirigami_studio.outlines import turning
 from kirigami_studio.outlines.figures import BoundingBox, Figure, figure
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.rounding import rounded
+from kirigami_studio.outlines.rounding import _shortened, rounded
 from kirigami_studio.outlines.turning import turn_back
 
 #: A plate of 10 with a slit of 2 by 6 from the top.
@@ -90,3 +90,13 @@ def test_that_rounder_shapes_lead_from_a_circle_to_the_target() -> None:
     assert lengths[0] < 3.7 < 4.5 < lengths[-1] < outline.polygon.length
     depths = [shape.convex_hull.area for shape in shapes]
     assert depths == sorted(depths)
+
+
+def test_that_a_curve_is_shortened_as_by_its_whole_matrix() -> None:
+    points = np.random.default_rng(4).normal(size=(9, 2))
+    moved, step = _shortened(points, 0.3), 0.3
+    after = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
+    before = np.roll(after, 1)
+    ahead, behind = (np.roll(moved, way, axis=0) - moved for way in (-1, 1))
+    pulled = ahead / after[:, None] + behind / before[:, None]
+    np.testing.assert_allclose(moved - (2.0 * step / (after + before))[:, None] * pulled, points, atol=1e-12)

@@ -20,7 +20,14 @@ from kirigami_studio.pipeline.events import Result
 from kirigami_studio.pipeline.fit_again import fit_again
 from kirigami_studio.pipeline.redesign import COVER_EVENNESS, covered, refitted, trimmed
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import best_of, needs_cover
+from kirigami_studio.pipeline.run import (
+    CLOSER_BELOW,
+    COVERED_BELOW,
+    COVERED_CLOSELY,
+    best_of,
+    may_be_closer,
+    needs_cover,
+)
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import FabricationSettings
@@ -172,3 +179,29 @@ def test_that_a_cover_is_fitted_again_as_a_cover(run: Result, cover: Candidate, 
     assert reports[-1].done == 1
     for report in reports:
         assert report.after is None or report.after.score.evenness.area_cv < cover.score.evenness.area_cv
+
+
+@pytest.fixture(scope="module")
+def heart() -> Result:
+    """A shape that closed sheets of a coarse grid nearly show."""
+    return best_of(Request(load("heart"), (7, 7), k=4, polish=12))
+
+
+def test_that_a_closed_design_that_lacks_little_is_covered_where_that_is_worth_more(heart: Result) -> None:
+    closed = [one for one in heart.candidates if one.family is Family.CLOSED]
+    covers = [one for one in heart.candidates if one.family is Family.COVER]
+    assert max(one.match for one in closed) > COVERED_BELOW and closed[0].match < CLOSER_BELOW
+    assert may_be_closer(heart.request, closed) and not needs_cover(heart.request, heart.candidates)
+    # One along the edge that shows the target leaves no work for notches.
+    assert [one.trim.deep for one in covers if one.trim] == [False]
+    assert covers[0].match > COVERED_CLOSELY > closed[0].match + 0.01
+    assert all(heart.ranking.worth_as_made(one) > heart.ranking.worth(closed[0]) for one in covers)
+    assert all(one.symmetry is closed[0].symmetry for one in covers)
+
+
+def test_that_no_covers_are_tried_where_the_first_closed_design_shows_the_target(heart: Result) -> None:
+    first, *others = (one for one in heart.candidates if one.family is Family.CLOSED)
+    shown = replace(first, score=replace(first.score, iou_exact=0.99))
+    assert not may_be_closer(heart.request, [shown, *others]) and may_be_closer(heart.request, [first, shown])
+    for change in ({"covers": False}, {"polish": 5}, {"trim": True}):
+        assert not may_be_closer(replace(heart.request, **change), [first])

@@ -23,7 +23,7 @@ from kirigami_studio.pipeline import auto_grid, worker
 from kirigami_studio.pipeline.pool import Pool, worker_command
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import Watch, answers, gains, grid_choice
-from kirigami_studio.pipeline.tasks import PolishTask, Task, TaskResult, scored
+from kirigami_studio.pipeline.tasks import PolishTask, PolishTogether, Task, TaskResult, scored
 from kirigami_studio.pipeline.worker import Alive, Assignment, Done, Ready
 from tests.refusals import refused
 
@@ -99,6 +99,15 @@ def wait_until_ready(pool: Pool) -> None:
         assert pool.ready or pool.usable
         time.sleep(0.02)
     assert pool.ready
+
+
+def test_that_fits_scored_together_are_those_of_one_by_one(
+    request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult]
+) -> None:
+    together = PolishTogether(tuple(tasks)).carry_out(request_for_heart, never)  # type: ignore[arg-type]
+    assert together.parts == tuple(expected[place] for place in range(COUNT))
+    assert together.evaluations == sum(part.evaluations for part in together.parts)
+    assert sum(part.candidate is not None for part in together.parts) > 1
 
 
 def test_that_workers_give_bit_by_bit_the_answers_of_one_process(

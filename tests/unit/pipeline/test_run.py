@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +24,7 @@ from kirigami_studio.pipeline.rank import USUAL, Ranking
 from kirigami_studio.pipeline.redesign import refitted, rescored
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, decodings, run
-from kirigami_studio.pipeline.tasks import GuidedTask, TaskResult, scored
+from kirigami_studio.pipeline.tasks import GuidedTask, PolishTask, TaskResult, scored
 from kirigami_studio.polish import continuation
 from tests.refusals import refused
 
@@ -196,6 +197,22 @@ def test_that_polishing_can_be_cancelled(request_for_heart: Request) -> None:
     assert caught.value.code == "run.stopped_polishing"
 
 
+def test_that_no_sample_takes_more_steps_than_were_asked_for(
+    request_for_heart: Request, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: Counter[int] = Counter()
+    fitted = PolishTask.fitted
+
+    def counted(task: PolishTask, *given: object) -> object:
+        asked[task.candidate.index] += task.steps
+        return fitted(task, *given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(PolishTask, "fitted", counted)
+    best_of(replace(request_for_heart, grid=(5, 6), polish=12), pool=Pool(0))
+    assert set(asked) == {0, 1, 2, 3}
+    assert max(asked.values()) == 12
+
+
 def test_that_workers_and_one_process_give_the_same_result(request_for_heart: Request) -> None:
     wish = replace(request_for_heart, grid=(4, 5), k=16, polish=4, guided=4)
     pool = Pool(2)
@@ -274,7 +291,7 @@ def test_that_a_run_has_k_designs_however_few_poses_a_shape_offers(symmetry: str
 
 
 def test_that_the_best_designs_are_fitted_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    wish = Request(load("heart"), grid=(4, 5), k=8, polish=10)
+    wish = Request(load("heart"), grid=(4, 5), k=8, polish=10, covers=False)
     finished = best_of(wish, pool=Pool(0)).candidates
     monkeypatch.setattr("kirigami_studio.pipeline.run.FINISHED", 0)
     before = {one.index: one for one in best_of(wish, pool=Pool(0)).candidates}

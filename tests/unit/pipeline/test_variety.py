@@ -76,6 +76,20 @@ def test_that_every_turn_is_the_same_sheet(uneven: bool, grid: tuple[int, int], 
         assert exact_iou(align(outline, target.points).apply(outline), target) == pytest.approx(1.0, abs=1e-6)
 
 
+def test_that_edge_hinges_tell_sheets_apart_and_turn_with_them() -> None:
+    sheet = uneven_sheet(5, 5, seed=1)
+    hinges = np.random.default_rng(3).uniform(-0.4, 0.4, rim_table(5, 5).hinges.size)
+    moved = Sheet(sheet.field, Rim(*sheet.rim.sides, hinges))
+    turned = turns(moved, hinges=True)[1]
+    mouths = 25 + sheet.rim.positions.size
+    half = Sheet(RatioField.from_log10(turned[:25].reshape(5, 5)), Rim.moved(5, 5, turned[25:mouths], turned[mouths:]))
+    apart = distances(moved, [moved, sheet, half])
+    assert apart[[0, 2]] == pytest.approx(0.0, abs=1e-9) and apart[1] > DUPLICATE
+    still = deploy(moved).outline(1.0)
+    outline, target = deploy(half).outline(1.0), Outline.from_points(still)
+    assert exact_iou(align(outline, target.points).apply(outline), target) == pytest.approx(1.0, abs=1e-6)
+
+
 def test_that_the_distance_is_the_smallest_over_the_turns() -> None:
     field, other = random_field(1), random_field(2)
     by_hand = min(np.sqrt(np.mean((z - other.log10) ** 2)) for z in images_of(field))

@@ -44,6 +44,14 @@ def test_that_slopes_are_exact() -> None:
     assert along_x @ move[:, 0] + along_y @ move[:, 1] == pytest.approx((ahead - behind) / (2 * step), abs=1e-7)
 
 
+def test_that_what_is_pulled_is_what_the_matrices_of_the_slopes_say() -> None:
+    nodes = deploy(field(4, 5, seed=3)).compact
+    found = junctions(nodes, 4, 5)
+    weight = np.random.default_rng(2).normal(size=len(found))
+    expected = np.stack([weight @ along for along in found.reach(len(nodes))], axis=1)
+    np.testing.assert_allclose(found.pulled(weight, len(nodes)), expected, atol=1e-12)
+
+
 @pytest.mark.parametrize("name", ["heart", "star"])
 def test_that_a_fit_with_the_term_opens_shallow_junctions_at_nearly_the_same_match(name: str) -> None:
     def fitted(weight: float) -> tuple[float, float]:

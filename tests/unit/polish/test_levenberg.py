@@ -19,7 +19,8 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
-from kirigami_studio.polish.levenberg import Fit, polish
+from kirigami_studio.polish.bounds import ShapeBounds
+from kirigami_studio.polish.levenberg import STEPS_UNSEEN, Fit, polish
 from kirigami_studio.polish.preferences import Preference
 from tests.refusals import refused
 
@@ -183,3 +184,25 @@ def test_that_held_voids_must_fit_the_field_and_go_with_no_symmetry() -> None:
         polish(field, load("heart"), locked=np.zeros((3, 3), dtype=bool))
     with refused(UsageError, "fit.locks_and_symmetry"):
         polish(field, load("heart"), locked=np.ones((4, 4), dtype=bool), symmetry=Symmetry.HALF_TURN)
+
+
+@pytest.mark.parametrize("clear_again", [True, False])
+def test_that_a_fit_that_crosses_itself_unseen_goes_back_and_looks_at_every_step(
+    monkeypatch: pytest.MonkeyPatch, clear_again: bool
+) -> None:
+    looks = 0
+
+    def is_clear(bounds: ShapeBounds, nodes: object, phi: float) -> bool:
+        nonlocal looks
+        looks += 1
+        return looks == 1 or (clear_again and looks > 2)
+
+    start = polish(RatioField.uniform(6, 6), load("heart"), steps=0)
+    monkeypatch.setattr(ShapeBounds, "is_clear", is_clear)
+    fit = polish(RatioField.uniform(6, 6), load("heart"), steps=STEPS_UNSEEN, pose=start.pose)
+    if clear_again:
+        assert (fit.steps, looks) == (STEPS_UNSEEN, 2 + STEPS_UNSEEN)
+        assert fit.cost < 0.5 * start.cost
+    else:
+        assert (fit.steps, fit.cost) == (0, start.cost)
+        assert fit.sheet == start.sheet

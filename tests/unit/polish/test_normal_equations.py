@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.polish import normal_equations
 from kirigami_studio.polish.normal_equations import FLOOR, Damped, Quadratic
 
 VARIABLES, COORDINATES = 30, 12
@@ -61,3 +62,17 @@ def test_that_a_model_can_be_factored_again(model: Quadratic) -> None:
     Damped.of(model, 1e-2, none)
     np.testing.assert_array_equal(model.inner, inner)
     np.testing.assert_array_equal(model.outline, outline)
+
+
+def test_that_much_damping_is_factored_in_single_precision_and_little_in_double(
+    model: Quadratic, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    none, step = np.zeros(VARIABLES, dtype=np.bool_), {}
+    for least in (VARIABLES + 1, VARIABLES):
+        monkeypatch.setattr(normal_equations, "SINGLE", least)
+        for damping in (1e-2, 1e-7):
+            step[least, damping] = Damped.of(model, damping, none).step(model.gradient, model.spread)
+    np.testing.assert_allclose(step[VARIABLES, 1e-2], step[VARIABLES + 1, 1e-2], rtol=1e-3, atol=1e-4)
+    assert step[VARIABLES, 1e-2].dtype == np.float64
+    assert not np.array_equal(step[VARIABLES, 1e-2], step[VARIABLES + 1, 1e-2])
+    np.testing.assert_array_equal(step[VARIABLES, 1e-7], step[VARIABLES + 1, 1e-7])

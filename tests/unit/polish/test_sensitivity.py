@@ -10,7 +10,7 @@ import scipy.sparse
 
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
-from kirigami_studio.lattice.sheet import Rim, Sheet
+from kirigami_studio.lattice.sheet import Rim, Sheet, rim_table
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.factor import factored
@@ -147,3 +147,34 @@ def test_that_the_system_is_solved_both_ways(rows: int, sides: int) -> None:
     factor = factored(coupling, np.arange(rows * width))
     np.testing.assert_allclose(factor.solve(right), np.linalg.solve(matrix, right), atol=1e-12)
     np.testing.assert_allclose(factor.solve_transposed(right), np.linalg.solve(matrix.T, right), atol=1e-12)
+
+
+@pytest.mark.parametrize("phi", [0.4, 2.0])
+@pytest.mark.parametrize("start", STARTS, ids=["rectangle", "pentagon"])
+def test_that_free_edge_hinges_are_those_of_the_deployment_with_their_derivative(
+    phi: float, start: list[list[float]] | None
+) -> None:
+    grid, voids = (4, 5), 20
+    hinges = np.random.default_rng(7).uniform(-0.4, 0.4, rim_table(*grid).hinges.size)
+    shape, step = np.concatenate([random_shape(grid), hinges]), 1e-6
+    rim = Rim.moved(*grid, shape[voids : voids + sum(grid)], hinges)
+    sheet = Sheet(RatioField.from_log10(shape[:voids].reshape(grid)), rim, start, (1.0, 0.8))
+    model = OutlineModel.of(sheet, phi, free_rim=True, free_hinges=True)
+    assert model.size == shape.size
+    assert np.abs(model.outline(shape) - deploy(sheet).outline(phi)).max() < 1e-10
+    assert np.abs(OutlineModel.of(sheet, phi).outline(shape[:voids]) - deploy(sheet).outline(phi)).max() < 1e-10
+    steps = step * np.eye(shape.size)
+    outline = np.stack([(model.outline(shape + one) - model.outline(shape - one)) / (2 * step) for one in steps], -1)
+    nodes = np.stack([(model.nodes(shape + one) - model.nodes(shape - one)) / (2 * step) for one in steps], -1)
+    motion, basis = model.node_motion(model.decoded(shape)), Basis.of(shape.size, None)
+    assert np.abs(motion.outline(basis) - outline).max() < 1e-6
+    assert np.abs(motion.derivative(basis) - np.moveaxis(nodes, 1, 0)).max() < 1e-6
+    force = np.random.default_rng(2).normal(size=(model.node_count, 2))
+    assert np.abs(motion.gradient(force) - np.einsum("nd,ndv->v", force, nodes)).max() < 1e-5
+
+
+def test_that_the_second_state_of_moved_edge_hinges_is_the_deployments() -> None:
+    rim = Rim.moved(3, 4, np.zeros(7), np.full(rim_table(3, 4).hinges.size, 0.2))
+    sheet = Sheet(RatioField.from_log10(random_z(3, 4).reshape(3, 4)), rim)
+    expected = deploy(sheet).outline(0.0)
+    assert np.abs(OutlineModel.of(sheet, 0.0).outline(sheet.field.log10.ravel()) - expected).max() < 1e-10

@@ -44,7 +44,7 @@ def test_that_a_design_that_is_gone_is_not_brought_back(document: Document) -> N
 
 def test_that_locks_add_up_and_are_named(document: Document) -> None:
     one = edits.lock_voids(document, [(1, 2)], True)
-    assert one.label == "Lock void (1, 2)" and one.document.locked == {(0, 0), (1, 2)}
+    assert one.label == "Lock the void in row 1, column 2" and one.document.locked == {(0, 0), (1, 2)}
     two = edits.lock_voids(one.document, [(0, 0), (1, 2)], False)
     assert two.label == "Unlock 2 voids" and not two.document.locked
     every = edits.lock_all(document, True)

@@ -19,7 +19,7 @@ from kirigami_studio.project.edits import edit_target, set_fabrication, set_sett
 from kirigami_studio.project.history import History
 from kirigami_studio.project.sheet_size import set_opened_size, size_of, sized
 from kirigami_studio.project.store import load, pack, packed_design, packed_designs, save
-from kirigami_studio.project.target_parts import kept_to_scale, parts_as_cut, set_parts, show_part
+from kirigami_studio.project.target_parts import kept_to_scale, parts_as_cut, set_parts, show_part, with_twins
 from tests.refusals import refused
 
 
@@ -209,3 +209,18 @@ def test_that_parts_of_one_shape_and_size_are_twins_wherever_they_lie(dot, penta
     larger = Outline.from_points(9.0 * dot.points, "larger", unit="mm")
     pieces = [(dot, (0.0, 0.0)), (pentagon, (9.0, 0.0)), (moved, (50.0, 3.0)), (larger, (0.0, 70.0)), (dot, (9.0, 9.0))]
     assert target_parts.twins(parts_as_cut(set_parts(Document(), pieces).document)) == (0, 1, 0, 3, 0)
+
+
+def test_that_parts_of_one_shape_and_size_share_their_designs_and_keep_their_places(candidates, dot, pentagon) -> None:
+    twin = replace(dot, name="other dot")
+    pieces = [(dot, (0.0, 60.0)), (pentagon, (0.0, 0.0)), (twin, (40.0, 60.0))]
+    letter = set_parts(Document(), pieces).document
+    alone = designed(show_part(letter, 1).document, candidates)
+    assert with_twins(alone, 1) == alone
+    first = with_twins(designed(letter, candidates), 0)
+    dots = first.parts[0], first.parts[2]
+    assert [part.candidates for part in dots] == [candidates, candidates]
+    assert [(part.target.name, part.place) for part in dots] == [("dot", (0.0, 60.0)), ("other dot", (40.0, 60.0))]
+    # One that has designs of its own keeps them.
+    own = designed(show_part(letter, 2).document, candidates[:1])
+    assert with_twins(designed(show_part(own, 0).document, candidates), 0).parts[2].candidates == candidates[:1]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 
 from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
+from kirigami_studio.lab.benchmark.paper_tables import TRAINING_BATCH, TRAINING_STEPS
 from kirigami_studio.lab.benchmark.report.cells import (
     EARLIER,
     Figures,
@@ -48,6 +50,8 @@ def _generator_tables(figures: Figures, pictures: dict[str, bytes]) -> Iterator[
         )
     if is_earlier(figures):
         notes.append(EARLIER)
+    if short := _short_of_budget(figures):
+        notes.append(f"Trained on less than the paper's {TRAINING_STEPS} steps of {TRAINING_BATCH}: {short}.")
     for family, table in figures["families"].items():
         yield ""
         yield " ".join((f"{family.capitalize()}, {table['targets']} targets; {shared}.", *notes))
@@ -77,6 +81,15 @@ def _generator_tables(figures: Figures, pictures: dict[str, bytes]) -> Iterator[
             pictures[name] = LineChart("network evaluations of a sample", "sIoU (%)", curves, logarithmic=True).svg()
             yield ""
             yield f"![sIoU against network evaluations of a sample, {family}]({name})"
+
+
+def _short_of_budget(figures: Figures) -> str:
+    """Networks that saw fewer designs than the paper's own, with their steps and family."""
+    budget = TRAINING_STEPS * TRAINING_BATCH
+    its_own = {name for table in figures["families"].values() for name, row in table["rows"].items() if row["paper"]}
+    trained = {name: one for name, one in figures.get("trained", {}).items() if name in its_own}
+    short = {name: one for name, one in trained.items() if not one["calls"] and one["steps"] * one["batch"] < budget}
+    return ", ".join(f"{name} ({one['steps']} of {one['batch']}, {one['family']})" for name, one in short.items())
 
 
 def grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
@@ -177,6 +190,13 @@ def _made_table(figures: Figures) -> Iterator[str]:
     yield ""
 
 
+def _minutes(log: Sequence[Mapping[str, float]]) -> float:
+    """Minutes of a run, whose clock begins anew wherever it was resumed."""
+    seconds = [line["seconds"] for line in log]
+    ends = [before for before, after in pairwise(seconds) if after < before]
+    return (sum(ends) + seconds[-1]) / 60.0
+
+
 def training_section(
     logs: Mapping[str, Sequence[Mapping[str, float]]], about: Mapping[str, Figures], pictures: dict[str, bytes]
 ) -> Iterator[str]:
@@ -186,17 +206,21 @@ def training_section(
     yield "IoU of one sample on 200 validation targets of each family, in the target's own pose, at the end of a run."
     yield "The paper: 31250 steps of 64 designs for each of its generators, on two RTX 4090."
     yield ""
-    yield "| run | weights | steps | batch | learning rate | minutes | structured | Sobol | drawn shapes | loss |"
-    yield "|---|---|---|---|---|---|---|---|---|---|"
+    yield (
+        "| run | weights | steps | batch | learning rate | minutes | structured | released | Sobol | drawn shapes | "
+        "loss |"
+    )
+    yield "|---|---|---|---|---|---|---|---|---|---|---|"
     for name, log in logs.items():
         last = log[-1]
         told = about.get(name, {"parameters": "", "settings": {}})
         size = f"{told['parameters'] / 1e6:.2f} M" if told["parameters"] else ""
         settings = told["settings"]
-        matches = (share(last[f"{family}_iou"]) for family in ("structured", "sobol", "drawn"))
+        families = ("structured", "released", "sobol", "drawn")
+        matches = (measured(last.get(f"{family}_iou")) for family in families)
         yield (
             f"| {name} | {size} | {last['step']:.0f} | {settings.get('batch', '')} | "
-            f"{settings.get('learning_rate', '')} | {last['seconds'] / 60.0:.0f} | {' | '.join(matches)} | "
+            f"{settings.get('learning_rate', '')} | {_minutes(log):.0f} | {' | '.join(matches)} | "
             f"{last['loss']:.4f} |"
         )
     for title, key, factor in (

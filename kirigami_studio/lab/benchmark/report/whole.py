@@ -13,9 +13,10 @@ from pathlib import Path
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.files import write_atomically
-from kirigami_studio.lab.benchmark.report.beside_paper import beside_paper_section
+from kirigami_studio.lab.benchmark.report.beside_paper import beside_paper_section, deviation_section
 from kirigami_studio.lab.benchmark.report.cells import Figures
 from kirigami_studio.lab.benchmark.report.generators import generator_section, grpo_section, training_section
+from kirigami_studio.lab.benchmark.report.others import leaderboard_section, literature_section
 from kirigami_studio.lab.benchmark.report.sheets import as_cut_section, shapes_section
 from kirigami_studio.lab.benchmark.report.solvers import best_of_k_section, grid_sweep_section, solver_section
 
@@ -30,6 +31,8 @@ MACHINE = Path("machine.json")
 #: Folder of training runs, each with a ``log.jsonl`` and an ``about.json``, and of what ``benchmark designs`` wrote: a
 #: JSON file for each set of shapes, with its picture.
 TRAINING, SHAPES = Path("training"), Path("shapes")
+#: Where calls of ``benchmark literature`` wrote, such as ``literature-more.json``; and what ``benchmark judge`` keeps.
+LITERATURE, LEADERBOARD = "literature*.json", Path("leaderboard.json")
 #: In the folder of a training run: its settings and the size of its network.
 ABOUT = "about.json"
 
@@ -83,7 +86,8 @@ def made_from(folder: Path) -> Report:
         opening = len(lines)
         logs = {path.parent.name: _log(path) for path in sorted((folder / TRAINING).glob("*/log.jsonl"))}
         solvers, generators = _suites(folder, SOLVERS), _suites(folder, GENERATORS)
-        lines += beside_paper_section(solvers, generators, _read(folder / GRPO), falling(logs))
+        beside = list(beside_paper_section(solvers, generators, _read(folder / GRPO), falling(logs)))
+        lines += [*beside, *deviation_section()] if beside else []
         if solvers:
             lines += solver_section(solvers, pictures)
         for name, section in ((BEST_OF_K, best_of_k_section), (GRID_SWEEP, grid_sweep_section)):
@@ -112,6 +116,12 @@ def made_from(folder: Path) -> Report:
         cut = _read(folder / AS_CUT)
         if cut is not None:
             lines += as_cut_section(cut)
+        published = [figures for figures in map(_read, sorted(folder.glob(LITERATURE))) if figures is not None]
+        if published:
+            lines += literature_section(published)
+        board = _read(folder / LEADERBOARD)
+        if board is not None:
+            lines += leaderboard_section(board)
         if len(lines) == opening:
             raise KirigamiError("benchmark.nothing_to_report", path=folder)
     except (KeyError, TypeError, ValueError, AttributeError) as error:

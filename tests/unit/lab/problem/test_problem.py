@@ -152,3 +152,27 @@ def test_that_the_command_judges_a_callable_of_a_module_here(
     assert (code, "AttributeError" in said) == (1, True)
     code, said = refusal(capsys, *judging, "somebodys:missing", "--targets", "heart")
     assert (code, "missing" in said) == (2, True)
+
+
+def test_that_a_leaderboard_keeps_one_row_for_each_call(
+    few: tuple[Outline, ...], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    uniform = problem.judge(problem.baseline("uniform"), few)
+    # As the released code measures it, the floor is higher.
+    assert uniform.siou_released > uniform.siou + 0.02
+    half = problem.judge(lambda targets: [np.ones((10, 10)), None, None], few)
+    assert half.siou_released < uniform.siou_released
+    board = problem.entered({}, {("drawn", "uniform"): uniform}, (10, 10), 0)
+    board = problem.entered(board, {("drawn", "uniform"): half, ("drawn", "mine"): uniform}, (10, 10), 0)
+    board = json.loads(json.dumps(problem.entered(board, {("drawn", "mine"): uniform}, (10, 10), 1)))
+    rows = board["rows"]
+    assert [(row["generator"], row["seed"]) for row in rows] == [("uniform", 0), ("mine", 0), ("mine", 1)]
+    assert rows[0]["siou_released"] == half.siou_released and rows[1]["siou"] == uniform.siou
+    file = tmp_path / "board.json"
+    file.write_text(json.dumps(board))
+    call = ("benchmark", "judge", "uniform", "--targets", "circle", "--leaderboard", str(file))
+    answer(capsys, *call, "--json")
+    assert [row["family"] for row in json.loads(file.read_text())["rows"]] == ["drawn", "drawn", "drawn", "circle"]
+    for wrong in ("[]", '{"rows": [{"siou": 1}]}', "nothing"):
+        file.write_text(wrong)
+        assert refusal(capsys, *call)[0] == 2 and file.read_text() == wrong
