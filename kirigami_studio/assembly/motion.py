@@ -214,9 +214,9 @@ def polygons(corners: ComplexArray) -> GeometryArray:
 
 
 def discs(centres: ComplexArray, radius: FloatArray | float, beyond: float = 0.0) -> GeometryArray:
-    """Polygons (K,) for circles about ``centres`` (K,), with corners as far outside of them as ``beyond``, mm.
+    """Polygons (K,) for circles about ``centres`` (K,).
 
-    Their sides are inside by ``ROUNDNESS_MM`` at most.
+    Corners are as far outside of them as ``beyond``, mm, and sides inside by ``ROUNDNESS_MM`` at most.
     """
     radii = np.broadcast_to(radius, centres.shape) + beyond
     return polygons(centres[:, None] + radii[:, None] * _corners(float(radii.max(initial=0.0)), ROUNDNESS_MM + beyond))
@@ -236,7 +236,9 @@ def swept_discs(
     tolerance: float,
     within: float = 0.0,
 ) -> GeometryArray:
-    """Areas that contain those swept by discs along arcs but for ``within``, and exceed them by ``tolerance``.
+    """Areas that contain those swept by discs along arcs, and exceed them by ``tolerance``.
+
+    They may lack as much as ``within`` all round.
 
     Parameters
     ----------

@@ -89,7 +89,7 @@ class PinOptions:
 
     @property
     def rounded_mm(self) -> float:
-        """How far corners of polygons lie outside of ears, and inside of notches, mm.
+        """Distance of polygons' corners outside of ears, and of sides inside of notches, mm.
 
         With sides as far on the other side of the arcs they need a quarter fewer corners.  Printed pieces keep all of
         their clearance.

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
-from kirigami_studio.assembly.motion import LayerMotion, freedom, swept_discs, swept_hulls
+from kirigami_studio.assembly.motion import LayerMotion, discs, freedom, swept_discs, swept_hulls
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
@@ -74,6 +74,20 @@ def test_that_swept_discs_contain_every_disc_and_little_more(turn: float, drift:
     corners = as_plane(shapely.get_coordinates(area))
     beyond = np.abs(corners[:, None] - arc).min(axis=1) - radius
     assert beyond.max() < tolerance + 1e-3
+
+
+def test_that_corners_on_both_sides_of_an_arc_are_fewer_and_no_farther_from_it() -> None:
+    centre, radius, tolerance, within = np.array([3.0 - 4.0j]), np.array([5.2]), 0.01, 0.01
+    (inner,), (both,) = discs(centre, radius), discs(centre, radius, within)
+    rims = [as_plane(shapely.get_coordinates(one))[:-1] - centre for one in (inner, both)]
+    sides = [np.abs(0.5 * (rim + np.roll(rim, 1))) - radius for rim in rims]
+    assert len(rims[1]) <= 0.75 * len(rims[0])
+    assert min(one.min() for one in sides) > -tolerance and np.abs(np.abs(rims[1]) - radius).max() < within + 1e-9
+    sweep = [np.array([20.0 + 9.0j]), np.array([math.pi]), radius, tolerance]
+    exact, rounded = (shapely.union_all(swept_discs(centre, *sweep, *some)[0]) for some in ((), (within,)))
+    assert shapely.get_num_coordinates(rounded) <= 0.8 * shapely.get_num_coordinates(exact)
+    assert rounded.buffer(within).buffer(1e-6).covers(exact.buffer(-tolerance))
+    assert exact.buffer(tolerance).covers(rounded)
 
 
 def test_that_swept_hulls_grown_by_their_tolerance_contain_the_polygon_on_its_way() -> None:

@@ -425,6 +425,7 @@ def test_that_files_of_three_kinds_are_written_once_and_their_outlines_worked_ou
     work: Counter[str] = Counter()
     for module, name in (
         (pieces_read, "_finished"),
+        (pieces_read, "_pieces_among"),
         (pieces_read, "passing"),
         (pieces_read, "_pin_finding"),
         (assembly_files, "_bed_written"),
@@ -440,6 +441,7 @@ def test_that_files_of_three_kinds_are_written_once_and_their_outlines_worked_ou
     write_assembly(job, tmp_path / "out", judged=lambda _: "ready_to_cut")
     assert work["_bed_written"] == len(KINDS) * len(job.beds), "the verdict was known before: nothing is written twice"
     assert work["_finished"] == len(assembly.pieces), "every outline once, whatever the kind and the reader"
+    assert work["_pieces_among"] == len(job.beds), "readers and kinds agree"
     assert work["passing"] == 2, "both layers are moved once"
     assert work["_pin_finding"] == len(KINDS), "holes are compared in files of every kind"
 

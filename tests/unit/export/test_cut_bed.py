@@ -143,14 +143,14 @@ def test_that_the_same_pieces_are_laid_once(pieces: tuple[Piece, ...]) -> None:
 
 def test_that_corners_that_the_beam_goes_round_have_few_points() -> None:
     """A step of 4 µm in the rim, as pieces that were extended have, takes sharp corners from the whole cut."""
-    turn = 2.0 * np.pi * np.arange(90) / 90
+    turn = 2.0 * np.pi * np.arange(30) / 30
     disc = np.column_stack([np.cos(turn), np.sin(turn)])
-    outline = np.vstack([9.0 * disc[:46], 9.004 * disc[45:], 9.004 * disc[:1]])
+    outline = np.vstack([9.0 * disc[:16], 9.004 * disc[15:], 9.004 * disc[:1]])
     (bed,) = laid_on_beds([Piece("A1", 1, (0, 0), outline)], KERF_MM, BED)
     (cuts,) = bed.pieces
-    beam = Polygon(outline).buffer(0.5 * KERF_MM, quad_segs=64)
-    assert Polygon(cuts.outline).hausdorff_distance(beam) < 6e-4
-    assert len(cuts.outline) <= 1.5 * len(outline)
+    (finding, *_), _ = found_pieces(bed.strokes(find_profile("any")), bed, KERF_MM)
+    assert finding.code == "verify.pieces_found" and float(str(finding.fields["miss_um"])) < 0.6
+    assert len(cuts.outline) <= 1.5 * len(outline), "round beside the step alone"
 
 
 def test_that_narrow_spikes_keep_their_tips_where_the_beam_goes_round_corners() -> None:
