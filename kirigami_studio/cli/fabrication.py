@@ -53,7 +53,14 @@ from kirigami_studio.studio.making import (
     written,
     written_pieces,
 )
-from kirigami_studio.studio.part_sheets import exporting_parts, part_of, part_requests, with_settings, writes_parts
+from kirigami_studio.studio.part_sheets import (
+    exporting_parts,
+    part_of,
+    part_requests,
+    shows_parts,
+    with_settings,
+    writes_parts,
+)
 from kirigami_studio.studio.verdict import Verdict, refused
 
 if TYPE_CHECKING:
@@ -112,9 +119,10 @@ def _export(arguments: argparse.Namespace, alone: bool = False) -> int:
     output = Output(Path(arguments.out), "cut" if arguments.all else None, _wants_record(arguments))
     if alone and (writes_parts(document, output) or request.is_pinned or writes_layers(request, output)):
         raise UsageError("export.several_files")
-    if writes_parts(document, output):
-        return _export_parts(with_settings(document, settings), output, fixes=arguments.fixes, as_json=arguments.json)
     angle = None if arguments.at_deg is None else math.radians(arguments.at_deg)
+    if writes_parts(document, output) or shows_parts(document, output):
+        whole = with_settings(document, settings)
+        return _export_parts(whole, output, angle, fixes=arguments.fixes, as_json=arguments.json)
     if not arguments.all and not writes_layers(request, output):
         find_writer(arguments.out)
     if request.is_pinned:
@@ -144,7 +152,7 @@ def _export(arguments: argparse.Namespace, alone: bool = False) -> int:
     if output.has_pdf:
         notes += page_notes(plan.copies.spread_mm, settings.paper)
     warnings = [note.text for note in notes]
-    if document.other_parts:
+    if document.other_parts and not shows_parts(document, output):
         shown = "" if document.target is None else document.target.name
         warnings.append(tr("This file shows the part '{name}' alone; --part takes another.", name=shown))
     if names := ", ".join(name for name in found.older if name not in found.removed):
@@ -223,12 +231,12 @@ def _export(arguments: argparse.Namespace, alone: bool = False) -> int:
     return 0 if found.ok else 1
 
 
-def _export_parts(document: Document, output: Output, *, fixes: bool, as_json: bool) -> int:
+def _export_parts(document: Document, output: Output, angle: float | None, *, fixes: bool, as_json: bool) -> int:
     """Write the sheets of all parts of a project, and report on each."""
     requests = part_requests(document)
     for request in requests:
         check_connectors(request.candidate, request.settings.options)
-    *_, found = exporting_parts(document, output, True, never)
+    *_, found = exporting_parts(document, output, True, never, picture_phi=angle)
     assert isinstance(found, ExportedFiles)  # all pages of a PDF are wanted
     verdicts = [(request, one.verdict) for request, one in zip(requests, found.parts, strict=True)]
     advice = [_advice(one, said) if fixes and said is not None and not said.ok else None for one, said in verdicts]

@@ -7,6 +7,7 @@ says so in a caption.  The file's comment names the motion.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
 
@@ -20,9 +21,13 @@ from kirigami_studio.export.picture import (
     INK,
     SUPERSAMPLING,
     PictureFrame,
+    PlacedLayout,
+    draw_parts,
     draw_pieces,
     draw_polygons,
+    parts_frame,
     shown_points,
+    spread,
 )
 from kirigami_studio.export.provenance import origin_facts
 from kirigami_studio.foundation.arrays import FloatArray, ShapeRings, as_rings
@@ -63,10 +68,31 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
     """
     if frames < 2:
         raise ExportError("gif.too_few_frames", frames=frames)
-    pictures = animation_frames(job, frames, longest)
+    motion = {} if job.motion is None else {"MOTION": job.motion.caption}
+    _write_frames(animation_frames(job, frames, longest), path, origin_facts(job.provenance) | motion)
+    return frames
+
+
+def write_parts_animation(parts: Sequence[PlacedLayout], path: str | Path) -> None:
+    """Write the ideal motion of all parts: their flat sheets come together as they open.
+
+    Raises
+    ------
+    ExportError
+        An unwritable place, or a file that did not read back.
+    """
+    apart = spread([part.small for part in parts])
+    ways = [[left] * len(apart) for left in ((frame_angles(0.0, FRAMES) / math.pi).tolist())]
+    frame = parts_frame(apart, ways[:: FRAMES // 4], LONGEST_SIDE)
+    pictures = [draw_parts(apart, lefts, frame) for lefts in ways]
+    _write_frames(_with_one_palette(pictures, captioned=False), path, origin_facts(parts[0].job.provenance))
+
+
+def _write_frames(pictures: Sequence[Image.Image], path: str | Path, said: Mapping[str, str]) -> None:
+    """Write a looping GIF and read it back."""
+    frames = len(pictures)
     durations = [HOLD_MS] + [FRAME_MS] * (frames - 2) + [HOLD_MS]
     stream = BytesIO()
-    said = origin_facts(job.provenance) | ({} if job.motion is None else {"MOTION": job.motion.caption})
     facts = "; ".join(f"{name} {text}" for name, text in said.items())
     pictures[0].save(
         stream,
@@ -86,7 +112,6 @@ def write_animation(job: ExportJob, path: str | Path, frames: int = FRAMES, long
                 raise ExportError("gif.other_frames", found=found, planned=frames)
 
     write_atomically(Path(path), stream.getvalue(), verify)
-    return frames
 
 
 def animation_frames(job: ExportJob, frames: int, longest: int) -> list[Image.Image]:

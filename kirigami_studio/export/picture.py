@@ -5,18 +5,22 @@ The colours of all exported pictures and drawings are here, as red, green, blue 
 
 from __future__ import annotations
 
+import math
 import struct
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import SEEK_END, BytesIO
+from itertools import combinations
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from PIL import Image, ImageChops, ImageDraw, ImageFilter
 from PIL.PngImagePlugin import PngInfo, putchunk
+from shapely.geometry.base import BaseGeometry
 
 from kirigami_studio.assembly.posed_pieces import GLINT, HEAD_RIM, PosedPieces, shaded
 from kirigami_studio.export.exporter import ExportJob
@@ -54,6 +58,9 @@ MARGIN = 0.05
 DARKNESS, SOFTNESS = 90, 0.6
 #: A head's spot of light is so large and lies so far from the middle, in radii of the head.
 SPOT, SPOT_AT = 0.5, 0.2
+#: Flat sheets of parts lie up to so many times as far apart as their targets, looked for in so many steps; else in
+#: a row with this gap, in widths of the widest.
+MOST_SPREAD, SPREADS, ROW_GAP = 4.0, 24, 0.05
 #: Bitmaps tell whole pixels a metre: 300 dpi become 299.9994.
 SAME_DPI = 0.02
 
@@ -156,30 +163,103 @@ def preview(job: ExportJob, longest: int = LONGEST_SIDE) -> Image.Image:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacedLayout:
-    """The layout of a part in its place among those of others."""
+    """The layout of a part in its place among those of others.
+
+    Flat sheets are larger than what they open to, so they lie farther apart: on the way each moves straight.
+    """
 
     job: ExportJob
     mm: float  #: for one unit of the target's frame
     shift: FloatArray  #: (2,), mm; of the target's centroid
+    flat: FloatArray  #: (2,), mm; the same while the sheet is flat
 
-    def put(self, points: FloatArray) -> FloatArray:
+    @property
+    def small(self) -> PlacedLayout:
+        """The same as thumbnails show it."""
+        pieces = self.job.pieces
+        return self if pieces is None else replace(self, job=replace(self.job, pieces=pieces.small))
+
+    def share_left(self, phi: float) -> float:
+        """Share (0 to 1) of the way from the target angle to the flat sheet."""
+        end = self.job.phi
+        return float(np.clip((phi - end) / (math.pi - end), 0.0, 1.0)) if end < math.pi else 0.0
+
+    def place(self, left: float) -> FloatArray:
+        """Where the target's centroid is (2,), mm, at a share of the way."""
+        at: FloatArray = self.shift + left * (self.flat - self.shift)
+        return at
+
+    def put(self, points: FloatArray, left: float = 0.0) -> FloatArray:
         """Points (P, 2) of the target's frame, mm."""
-        return points * self.mm + self.shift
+        return points * self.mm + self.place(left)
+
+    def shown(self, left: float) -> list[FloatArray]:
+        """Panels or pieces, each (P, 2), mm, at a share of the way."""
+        phi, job = self.job.phi + left * (math.pi - self.job.phi), self.job
+        outlines = job.posed.parts(phi) if job.pieces is None else job.pieces.outlines(phi)
+        return [self.put(outline, left) for outline in outlines]
+
+
+def spread(parts: Sequence[PlacedLayout]) -> list[PlacedLayout]:
+    """Flat sheets so far apart that they do not overlap: as they are arranged, else in a row."""
+    middle = np.mean([part.shift for part in parts], axis=0)
+    for factor in np.geomspace(1.0, MOST_SPREAD, SPREADS).tolist():
+        apart = [replace(part, flat=middle + factor * (part.shift - middle)) for part in parts]
+        if not any(_overlap(apart, left) for left in (0.5, 1.0)):
+            return apart
+    boxes = [np.array(_hull(replace(part, flat=np.zeros(2)), 1.0).bounds) for part in parts]
+    gap = ROW_GAP * max(float(box[2] - box[0]) for box in boxes)
+    ends = np.cumsum([float(box[2] - box[0]) + gap for box in boxes])
+    lefts = middle[0] - 0.5 * ends[-1] + np.append(0.0, ends[:-1])
+    return [
+        replace(part, flat=np.array([left - box[0], middle[1]]))
+        for part, left, box in zip(parts, lefts, boxes, strict=True)
+    ]
+
+
+def _overlap(parts: Sequence[PlacedLayout], left: float) -> bool:
+    hulls = [_hull(part, left) for part in parts]
+    return any(one.intersects(other) for one, other in combinations(hulls, 2))
+
+
+def _hull(part: PlacedLayout, left: float) -> BaseGeometry:
+    return shapely.MultiPoint(np.concatenate(part.shown(left))).convex_hull
 
 
 def write_parts_png(parts: Sequence[PlacedLayout], path: str | Path, longest: int = LONGEST_SIDE) -> None:
-    """Write the layouts of all parts at their target angles, each in its place.
+    """Write the layouts of all parts at their angles, each in its place.
 
     Raises
     ------
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    panels = [part.put(panel) for part in parts for panel in drawn_panels(part.job, part.job.shown_phi)[0]]
-    targets = [[part.put(ring) for ring in as_rings(part.job.target)] for part in parts]
-    frame = PictureFrame.around([*panels, *(ring for rings in targets for ring in rings)], longest)
-    facts = origin_facts(parts[0].job.provenance)
-    write_image(_drawn(panels, frame, targets, None), Path(path), facts, optimize=True)
+    ways = [part.share_left(part.job.shown_phi) for part in parts]
+    apart = spread(parts) if any(ways) else parts
+    image = draw_parts(apart, ways, parts_frame(apart, [ways], longest))
+    write_image(image, Path(path), origin_facts(parts[0].job.provenance), optimize=True)
+
+
+def parts_frame(parts: Sequence[PlacedLayout], ways: Iterable[Sequence[float]], longest: int) -> PictureFrame:
+    """The part of the plane, mm, with all parts at some shares of their ways, and with their targets."""
+    clouds = [points for lefts in ways for part, left in zip(parts, lefts, strict=True) for points in part.shown(left)]
+    targets = [part.put(ring) for part in parts for ring in as_rings(part.job.target)]
+    return PictureFrame.around([*clouds, *targets], longest)
+
+
+def draw_parts(parts: Sequence[PlacedLayout], ways: Sequence[float], frame: PictureFrame) -> Image.Image:
+    """Draw all parts at shares of their ways, each over its target, which moves with it."""
+    picture = Image.new("RGB", frame.pixels, PAPER)
+    for part, left in zip(parts, ways, strict=True):
+        job, low = part.job, (np.array(frame.low) - part.place(left)) / part.mm
+        own = PictureFrame((float(low[0]), float(low[1])), frame.scale * part.mm, frame.pixels)
+        phi = job.phi + left * (math.pi - job.phi)
+        if job.pieces is not None:
+            drawn = draw_pieces(job.pieces, phi, own, job.target)
+        else:
+            drawn = draw_polygons(job.posed.parts(phi), own, job.target)
+        picture = ImageChops.darker(picture, drawn)
+    return picture
 
 
 def drawn_panels(job: ExportJob, phi: float) -> tuple[list[FloatArray], list[FloatArray] | None]:
@@ -200,24 +280,13 @@ def draw_polygons(
 
     ``edges`` are lines (L, 2) that are drawn over the panels instead of their outlines.
     """
-    return _drawn(polygons, frame, [as_rings(target)], edges)
-
-
-def _drawn(
-    polygons: Sequence[FloatArray],
-    frame: PictureFrame,
-    targets: Sequence[Sequence[FloatArray]],
-    edges: Sequence[FloatArray] | None,
-) -> Image.Image:
-    """Draw panels over targets, each the rings (L, 2) of one; as :func:`draw_polygons`."""
     factor = SUPERSAMPLING
     size = (frame.pixels[0] * factor, frame.pixels[1] * factor)
     image = Image.new("RGB", size, PAPER)
     draw = ImageDraw.Draw(image)
-    shapes = [[frame.pixel(ring, factor) for ring in rings] for rings in targets]
-    for loops in shapes:
-        for loop in loops:
-            draw.polygon(loop, fill=TARGET_FILL if loop is loops[0] else PAPER)
+    loops = [frame.pixel(ring, factor) for ring in as_rings(target)]
+    for loop in loops:
+        draw.polygon(loop, fill=TARGET_FILL if loop is loops[0] else PAPER)
     for polygon in polygons:
         corners = frame.pixel(polygon, factor)
         draw.polygon(corners, fill=PANEL)
@@ -225,7 +294,7 @@ def _drawn(
             draw.line([*corners, corners[0]], fill=PANEL_EDGE, width=factor, joint="curve")
     for edge in () if edges is None else edges:
         draw.line(frame.pixel(edge, factor), fill=PANEL_EDGE, width=factor, joint="curve")
-    for loop in (loop for loops in shapes for loop in loops):
+    for loop in loops:
         draw.line([*loop, loop[0]], fill=TARGET_EDGE, width=2 * factor, joint="curve")
     return image.resize(frame.pixels, Image.Resampling.BOX)
 

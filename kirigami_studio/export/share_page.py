@@ -14,7 +14,8 @@ import io
 import json
 import math
 import string
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +29,12 @@ from kirigami_studio.export.artwork import Artwork
 from kirigami_studio.export.artwork_patches import PrintedSheet, printed_patches
 from kirigami_studio.export.artwork_raster import BitmapFrame, paint
 from kirigami_studio.export.exporter import ExportJob
+from kirigami_studio.export.picture import PlacedLayout, spread
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, as_rings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.resources import resource
-from kirigami_studio.foundation.words import language, tr
+from kirigami_studio.foundation.words import language, tr, tr_n
 
 #: Outlines (P, 2) of all parts at an angle (radians), world.
 Outlines = Callable[[float], list[FloatArray]]
@@ -54,7 +56,24 @@ def write_page(job: ExportJob, path: str | Path) -> None:
     ExportError
         An unwritable place, or a page that did not read back.
     """
-    content, data = page_of(job, Path(path).stem)
+    _write(page_of(job, Path(path).stem), path)
+
+
+def write_parts_page(parts: Sequence[PlacedLayout], path: str | Path) -> None:
+    """Write the page of the designs of all parts: their flat sheets come together as they open.
+
+    The first has the project of all as its record.
+
+    Raises
+    ------
+    ExportError
+        An unwritable place, or a page that did not read back.
+    """
+    _write(page_of(parts[0].job, Path(path).stem, spread(parts)), path)
+
+
+def _write(page: tuple[str, dict[str, Any]], path: str | Path) -> None:
+    content, data = page
 
     def verify(written: Path) -> None:
         if read_page(written) != data:
@@ -79,31 +98,40 @@ def read_page(path: Path) -> dict[str, Any]:
     return found
 
 
-def page_of(job: ExportJob, stem: str) -> tuple[str, dict[str, Any]]:
+def page_of(job: ExportJob, stem: str, sheets: Sequence[PlacedLayout] = ()) -> tuple[str, dict[str, Any]]:
     """The page as text, and its motion: lengths in mm, y up, the middle of all nodes at (0, 0).
 
-    ``stem`` is the name, without extension, of the project that a reader saves from it.
+    ``stem`` is the name, without extension, of the project that a reader saves from it.  Where there are ``sheets``,
+    these are shown in their places, in the frame of the drawing.
     """
     pieces = None if job.pieces is None else job.pieces.small
     posed = job.posed if pieces is None else pieces.design
-    outlines = posed.parts if pieces is None else pieces.outlines
     scale = posed.mm_per_world(job.width_mm) if pieces is None else pieces.mm_per_world
     known = (job.provenance.get("target"), job.provenance.get("name"))
     name = " \N{MIDDLE DOT} ".join(text for text in known if text) or tr("Kirigami design")
-    parts = _moving_parts(posed, outlines, scale)
-    box = _box(parts, posed)
+    moving = [_MovingSheet.of(sheet) for sheet in sheets] or [_MovingSheet.of(_alone(job, scale, _middle(posed)))]
+    box = _with_room(np.concatenate([sheet.ends() for sheet in moving]))
     data: dict[str, Any] = {
         "phi": posed.phi_target,
         "turn": _turn(posed),
         "shown": FIRST_SHARE,
         "size": [round(float(side), DECIMALS) for side in np.ptp(box, axis=0)],
         "file": f"{stem}.kiri",
-        "parts": [[odd, _numbers(np.array([carried])), _numbers(own)] for odd, carried, own in parts],
+        "parts": [
+            [odd, _numbers(np.array([carried])), _numbers(own), *([number] if sheets else [])]
+            for number, sheet in enumerate(moving)
+            for odd, carried, own in sheet.parts
+        ],
     }
+    if sheets:
+        # Angle over the target, turn, and place over the target and while flat of each.
+        data["sheets"] = [
+            [one.posed.phi_target, one.turn, *_numbers(np.array([one.place(0.0), one.place(1.0)]))] for one in moving
+        ]
     picture = ""
-    if job.artwork is not None and pieces is None:
+    if job.artwork is not None and pieces is None and not sheets:
         picture, data["print"] = _print_of(job.artwork, posed, job, scale)
-    target = [(as_plane(ring) - _middle(posed)) * scale for ring in as_rings(job.target)]
+    target = [ring for sheet in moving for ring in sheet.target]
     (left, bottom), (right, top) = box.tolist()
     style, script = (resource("share", f"page.{kind}").read_text(encoding="utf-8") for kind in ("css", "js"))
     template = string.Template(resource("share", "page.html").read_text(encoding="utf-8"))
@@ -111,7 +139,9 @@ def page_of(job: ExportJob, stem: str) -> tuple[str, dict[str, Any]]:
         "language": language(),
         "generator": f"Kirigami Studio {__version__}",
         "title": name,
-        "subtitle": _subtitle(job, posed),
+        "subtitle": _subtitle(job, posed)
+        if not sheets
+        else tr_n("{count} sheet, to one scale", "{count} sheets, to one scale", len(sheets)),
         "noscript": tr("This page moves by its own script. Allow scripts to see it."),
         "play": tr("Play"),
         "pause": tr("Pause"),
@@ -192,13 +222,56 @@ def _moving_parts(posed: PosedDesign, outlines: Outlines, scale: float) -> list[
     return found
 
 
-def _box(parts: list[tuple[int, complex, ComplexArray]], posed: PosedDesign) -> Any:
-    """Lower left and upper right corner (2, 2), mm, of the whole motion, with room."""
-    ends = []
-    for phi in np.linspace(posed.phi_target, math.pi, LOOKS).tolist():
-        points = np.concatenate([corners_at(part, posed.phi_target, _turn(posed), phi) for part in parts])
-        ends += [points.min(axis=0), points.max(axis=0)]
-    low, high = np.min(ends, axis=0), np.max(ends, axis=0)
+def _alone(job: ExportJob, scale: float, middle: complex) -> PlacedLayout:
+    """A design by itself, the middle of its nodes at (0, 0)."""
+    shift = -scale * as_points(np.array([middle]))[0]
+    return PlacedLayout(job, scale, shift, shift)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _MovingSheet:
+    """The parts of a sheet, or its pieces, and where it is."""
+
+    layout: PlacedLayout
+    posed: PosedDesign
+    parts: list[tuple[int, complex, ComplexArray]]  #: seen from the middle of all nodes, mm
+
+    @classmethod
+    def of(cls, layout: PlacedLayout) -> _MovingSheet:
+        job = layout.job
+        pieces = None if job.pieces is None else job.pieces.small
+        posed = job.posed if pieces is None else pieces.design
+        outlines = posed.parts if pieces is None else pieces.outlines
+        return cls(layout, posed, _moving_parts(posed, outlines, layout.mm))
+
+    @property
+    def turn(self) -> float:
+        return _turn(self.posed)
+
+    def place(self, left: float) -> complex:
+        """The middle of all nodes, mm, at a share of the way from the target."""
+        shift: complex = as_plane(self.layout.place(left)[None])[0]
+        return shift + self.layout.mm * _middle(self.posed)
+
+    @property
+    def target(self) -> list[ComplexArray]:
+        """Rings of the target where it is opened to, mm."""
+        return [as_plane(self.layout.put(ring)) for ring in as_rings(self.layout.job.target)]
+
+    def ends(self) -> Any:
+        """Corners (2 LOOKS, 2), mm, of the boxes around it on its way."""
+        ends, end = [], self.posed.phi_target
+        for left in np.linspace(0.0, 1.0, LOOKS).tolist():
+            phi = end + left * (math.pi - end)
+            at = as_points(np.array([self.place(left)]))[0]
+            points = at + np.concatenate([corners_at(part, end, self.turn, phi) for part in self.parts])
+            ends += [points.min(axis=0), points.max(axis=0)]
+        return np.stack(ends)
+
+
+def _with_room(points: Any) -> Any:
+    """Lower left and upper right corner (2, 2) of the box around points (P, 2), with room."""
+    low, high = points.min(axis=0), points.max(axis=0)
     room = MARGIN * float((high - low).max())
     return np.stack([low - room, high + room])
 

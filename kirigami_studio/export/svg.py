@@ -151,7 +151,7 @@ def write_layout_svg(job: ExportJob, path: str | Path, width_mm: float = 100.0) 
     if job.pieces is not None:
         _write_pieces_svg(job, job.pieces, Path(path))
         return
-    part = PlacedLayout(job, job.posed.mm_per_world(width_mm), np.zeros(2))
+    part = PlacedLayout(job, job.posed.mm_per_world(width_mm), np.zeros(2), np.zeros(2))
     _write_layouts([part], Path(path), "" if job.motion is None else job.motion.caption)
 
 

@@ -26,7 +26,7 @@ METRE = 1000.0
 
 
 def in_metres(text: str, values: Mapping[str, object]) -> tuple[str, dict[str, object]]:
-    """Return a sentence about lengths of cuts, and its values, with long ones in metres, to 0.1 mm or as exact."""
+    """Return a sentence about lengths of cuts, and its values, with long ones in metres."""
     shown = dict(values)
 
     def length(found: re.Match[str]) -> str:

@@ -103,7 +103,10 @@ class Deployment:
         return self.nodes(phi)[self.outline_loop(check_phi(phi))]
 
     def outline_loop(self, phi: float) -> IntArray:
-        """The outline's nodes at ``phi``: (L,) int; more of them at 0 where edge hinges are not halfway."""
+        """The outline's nodes at ``phi``: (L,) int.
+
+        At 0 they are more where edge hinges are not halfway.
+        """
         tables = self.topology
         if phi >= ZIPPED_BELOW:
             return tables.outline_nodes

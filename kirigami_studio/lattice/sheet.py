@@ -68,7 +68,7 @@ class RimTable:
     between: IntArray  #: (E, 2); the anchors before and after each of them, clockwise
 
     def shares(self, hinges: FloatArray) -> FloatArray:
-        """``share`` with edge hinges moved by ``hinges`` (E,) from halfway, or with none moved where that is empty."""
+        """``share`` with edge hinges moved from halfway by ``hinges`` (E,); none if that is empty."""
         if not hinges.size:
             return self.share
         moved = self.share.copy()
@@ -126,7 +126,7 @@ def _edge_hinges(rows: int, columns: int) -> IntArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rim:
-    """Where the cuts meet the rim: positions of the mouths along each side, and edge hinges that are off halfway."""
+    """Where the cuts meet the rim: mouths along each side, and edge hinges that are off halfway."""
 
     #: top, bottom: (k,), unit cells; from left to right, inside 0 .. n + 1.
     top: FloatArray
@@ -159,8 +159,9 @@ class Rim:
 
     @classmethod
     def moved(cls, rows: int, columns: int, offsets: FloatArray, hinges: FloatArray | None = None) -> Rim:
-        """Mouths moved along their sides by ``offsets`` (R,), unit cells, and edge hinges by shares (E,), as in
-        :class:`RimTable`.
+        """Mouths moved along their sides by ``offsets`` (R,), unit cells, as in :class:`RimTable`.
+
+        Edge hinges are moved by the shares ``hinges`` (E,), in its order too.
         """
         table = rim_table(rows, columns)
         positions = table.even + offsets
@@ -457,7 +458,10 @@ def _checked_cell(cell: tuple[float, float]) -> tuple[float, float]:
 
 
 def resized_sheet(sheet: Sheet, rows: int, columns: int) -> Sheet:
-    """The sheet carried to another grid: ratios by parity, the rim's offsets along sides, edge hinges halfway."""
+    """The sheet carried to another grid: ratios by parity, the rim's offsets along sides.
+
+    On another grid edge hinges are halfway.
+    """
     check_grid(rows, columns)
     if sheet.grid == (rows, columns):
         return sheet

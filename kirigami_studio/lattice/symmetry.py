@@ -118,7 +118,7 @@ class Symmetry(Enum):
 
 @dataclass(frozen=True, eq=False)
 class GridSymmetry:
-    """Signed permutations of one grid's numbers: m n entries of z, R offsets of mouths, E of edge hinges."""
+    """Signed permutations of one grid's numbers: z, then offsets of mouths and of edge hinges."""
 
     symmetry: Symmetry
     rows: int

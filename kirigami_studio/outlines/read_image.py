@@ -207,7 +207,7 @@ def _regions(ink: FloatArray, reduction: int, layer: str, colour: str) -> tuple[
 
 
 def _holes_in(parts: Sequence[Part], least: float) -> list[Part]:
-    """What is left open in shapes, such as a white star on a red disc; nobody takes it without asking."""
+    """Holes of shapes as parts, such as a white star on a red disc."""
     holes = [Polygon(ring) for part in parts if not part.is_aside for one in shapely.get_parts(part.region)
              for ring in one.interiors]  # fmt: skip
     holes = sorted((hole for hole in holes if hole.area >= least), key=lambda hole: hole.area, reverse=True)

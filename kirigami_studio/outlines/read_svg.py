@@ -253,7 +253,7 @@ def _ground(drawn: Sequence[Drawn], size: tuple[float, float] | None) -> Drawn |
 
 
 def _page_of(drawn: Sequence[Drawn], size: tuple[float, float] | None) -> Drawn | None:
-    """The first filled shape where it is a rectangle without a line that covers the page behind all others."""
+    """The first filled shape where it is a plain rectangle that covers the page."""
     first = next((shape for shape in drawn if shape.fill is not None), None)
     if first is None or first.stroke is not None:
         return None

@@ -101,7 +101,10 @@ SECOND_ROUND_SHOWN = 4
 #: the best are tried another way, and others are left behind.
 AGREED = 0.001
 
-#: Most designs that get the same steps once more in the end: those that may come first.
+#: Designs that samples become.
+DRAWN = (Origin.SAMPLED, Origin.RESAMPLED)
+
+#: Most designs that get steps once more in the end: those that may come first.
 FINISHED = 3
 
 #: Designs that are trimmed: the best that differ.
@@ -538,10 +541,10 @@ class _Work:
         return max(self.request.k, len(self.found))
 
     def finish(self) -> Iterator[Event]:
-        """Fit the best that differ once more, with the weights of the last steps, by all steps that are left."""
+        """Fit the best that differ once more with the weights of the last steps, samples by the steps that are left."""
         chosen = self._near_first(worth_a_fit(self.found, self.ranking), MAY_COME_FIRST)[:FINISHED]
-        left = self.request.polish - FIRST_ROUND - self._second_steps
-        tasks = [PolishTask(candidate, left) for candidate in chosen]
+        whole, left = self.request.polish, self.request.polish - FIRST_ROUND - self._second_steps
+        tasks = [PolishTask(one, left if one.origin in DRAWN else whole) for one in chosen]
         yield from self._replaced(chosen, tasks, FINISHING)
 
     def trim(self) -> Iterator[Event]:

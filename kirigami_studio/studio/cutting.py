@@ -49,7 +49,7 @@ STOPS = 4
 
 
 def expected_seconds(settings: FabricationSettings, grid: tuple[int, int] = USUAL_GRID) -> float:
-    """Rough time of cutting a sheet that nobody has designed so far, from its size, its grid and the speed.
+    """Rough time of cutting a sheet before it is designed.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def expected_seconds(settings: FabricationSettings, grid: tuple[int, int] = USUA
 
 
 def least_width_mm(settings: FabricationSettings, cells: float) -> float:
-    """Width (mm) below which connectors have hardly room on a sheet so many cells wide; 0 on pins.
+    """Least width (mm) of a sheet so many cells wide for its connectors; 0 on pins.
 
     Raises
     ------

@@ -29,11 +29,12 @@ from kirigami_studio.studio.making import (
     Output,
     Planned,
     closed,
-    export_job,
     exporting,
     jam_of,
     judged,
     many_pages_of,
+    picture_job,
+    pieces_of,
     planned,
     writes_layers,
     written,
@@ -48,6 +49,8 @@ if TYPE_CHECKING:
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.studio.as_cut import AsCut
 
+#: Kinds of pictures that show all parts of a project.
+PICTURED = frozenset({".png", ".gif", ".html"})
 #: Kinds of cut files that are written of a whole set, beside a folder for each part.
 TOGETHER = (".dxf", ".svg")
 
@@ -152,7 +155,7 @@ def worst_of(verdicts: Sequence[Verdict]) -> Verdict:
 
 
 def writes_parts(document: Document | None, output: Output) -> bool:
-    """Whether an output holds all parts of a project: cut files do, pictures show one."""
+    """Whether an output is cut files of all parts of a project."""
     if document is None or not document.other_parts:
         return False
     from kirigami_studio.export.bed_files import KINDS
@@ -161,24 +164,57 @@ def writes_parts(document: Document | None, output: Output) -> bool:
     return layered or output.name is not None or output.path.suffix.lower() in KINDS
 
 
+def shows_parts(document: Document | None, output: Output) -> bool:
+    """Whether an output is a picture of all parts of a project."""
+    shown = output.name is None and output.path.suffix.lower() in PICTURED
+    return shown and document is not None and bool(document.other_parts)
+
+
 def placed_layouts(document: Document) -> list[PlacedLayout]:
-    """The opened sheets of all parts, each in its place, for pictures of the whole.
+    """The opened sheets, or pieces, of all parts, each in its place, for pictures of the whole.
 
     Raises
     ------
     ProjectError
         A part has no design.
+    FabricationError, UsageError
+        Pieces that cannot be made.
     """
     from kirigami_studio.export.picture import PlacedLayout
+    from kirigami_studio.project.store import packed_designs
 
     scale, found = scale_of(document), []
     for request in part_requests(document):
         assert request.document is not None  # a request of a project has it
-        job = export_job(request, None)
-        x, y = request.document.place or (0.0, 0.0)
-        mm = job.posed.mm_per_world(request.settings.width_mm)
-        found.append(PlacedLayout(job, mm, scale * np.array([x, y])))
+        job = replace(picture_job(request), record=packed_designs(document))
+        place = scale * np.array(request.document.place or (0.0, 0.0))
+        pieces = job.pieces
+        mm = job.posed.mm_per_world(request.settings.width_mm) if pieces is None else pieces.mm_per_world
+        found.append(PlacedLayout(job, mm, place, place))
     return found
+
+
+def picturing_parts(
+    document: Document, path: Path, cancel: Cancel = never, picture_phi: float | None = None
+) -> Iterator[ExportedFiles]:
+    """Write a picture, animation or page of all parts, in their ideal motion.
+
+    Parameters
+    ----------
+    picture_phi : float, radians, optional
+        Angle that pictures show; the target angle unless given.
+    """
+    importing.import_exporters()
+    from kirigami_studio.export.animation import write_parts_animation
+    from kirigami_studio.export.picture import write_parts_png
+    from kirigami_studio.export.share_page import write_parts_page
+
+    writers = {".png": write_parts_png, ".gif": write_parts_animation, ".html": write_parts_page}
+    layouts = [replace(one, job=replace(one.job, picture_phi=picture_phi)) for one in placed_layouts(document)]
+    if cancel():
+        raise Cancelled("export.stopped", folder=path)
+    writers[path.suffix.lower()](layouts, path)
+    yield ExportedFiles(path, None, files=(path,))
 
 
 def exporting_parts(
@@ -187,15 +223,20 @@ def exporting_parts(
     many_pages: bool,
     cancel: Cancel,
     known: Mapping[Candidate, AsCut | str] = FrozenMapping(),
+    picture_phi: float | None = None,
 ) -> Iterator[ExportedFiles | ManyPages]:
-    """Write the chosen designs of all parts: a cut file for each bed; pieces in folders.
+    """Write the chosen designs of all parts: a cut file for each bed; pieces in folders; one picture of all.
 
     A PDF of many pages is written only where ``many_pages`` are wanted.  What is ``known`` of designs as cut is not
-    found out again.
+    found out again.  Pictures show ``picture_phi`` (radians), or the target angle.
     """
     importing.import_exporters()
     importing.import_as_cut()
     requests = part_requests(document)
+    if shows_parts(document, output):
+        for picture in picturing_parts(document, output.path, cancel, picture_phi):
+            yield _with_verdicts(document, requests, picture, known, cancel)
+        return
     if any(writes_layers(request, output) for request in requests):
         yield _layers_written(document, requests, output)
         return
@@ -216,7 +257,9 @@ def exporting_all(
 ) -> Iterator[ExportedFiles | ManyPages]:
     """Write files of a design, or of all parts of its project where the files hold them."""
     document = request.document
-    if document is not None and writes_parts(document, output):
+    if document is not None and shows_parts(document, output):
+        yield from picturing_parts(document, output.path, cancel)
+    elif document is not None and writes_parts(document, output):
         known = {} if request.as_cut is None else {request.candidate: request.as_cut}
         yield from exporting_parts(document, output, many_pages, cancel, known)
     else:
@@ -316,6 +359,28 @@ def _beds_written(
 
 def _part_of(sheet: PartSheet, verified: tuple[Verification, ...], output: Output) -> ExportedFiles:
     return ExportedFiles(output.path, sheet.made, verified, verdict=sheet.judged(verified), part=sheet.name)
+
+
+def _with_verdicts(
+    document: Document,
+    requests: Sequence[CutRequest],
+    picture: ExportedFiles,
+    known: Mapping[Candidate, AsCut | str],
+    cancel: Cancel,
+) -> ExportedFiles:
+    """A picture of all parts with the verdict on each."""
+    if any(request.is_pinned for request in requests):
+        judged_parts = [
+            ExportedFiles(picture.path, None, verdict=made.verdict, pieces=made, part=name)
+            for name, made in zip(part_names(document), map(pieces_of, requests), strict=True)
+        ]
+    else:
+        sheets = part_sheets(document, known, cancel)
+        judged_parts = [
+            ExportedFiles(picture.path, sheet.made, verdict=sheet.judged(), part=sheet.name) for sheet in sheets
+        ]
+    verdict = worst_of([one.verdict for one in judged_parts if one.verdict is not None])
+    return replace(picture, planned=judged_parts[0].planned, verdict=verdict, parts=tuple(judged_parts))
 
 
 def _layers_written(document: Document, requests: Sequence[CutRequest], output: Output) -> ExportedFiles:

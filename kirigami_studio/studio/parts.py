@@ -166,7 +166,7 @@ def places_in(read: PartsRead, numbers: frozenset[int]) -> tuple[tuple[float, fl
 
 
 def silhouette_of_strokes(source: SourceParts) -> Merging | None:
-    """How strokes become the silhouette that is seen, where open ones stand around everything that is closed.
+    """Way to join strokes that stand open around everything that is closed.
 
     A house of open lines is not its window.
     """

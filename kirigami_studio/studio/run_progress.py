@@ -1,4 +1,4 @@
-"""Progress of a whole run: the phases of a request, weighted by their usual times, and words for what is left.
+"""Progress of a whole run: its phases, weighted, and words for the time that is left.
 
 A phase that ends early, or that nobody needed, is passed over; the share of the whole never falls.  Only judging takes
 long enough for an estimate: designs are judged best first until none that is left could be better, so what is said is
@@ -78,10 +78,10 @@ class RunProgress:
         return replace(progress, share=self._share, message=message)
 
     def _begin(self, phase: Phase) -> None:
-        """Pass over the phases that are not needed; one that comes again takes a part of what is left."""
+        """Pass over phases that are not needed."""
         self._phase, self._began = phase, self._clock()
         self._total = self._before = 0
-        if phase not in self._left:
+        if phase not in self._left:  # it comes again
             self._span = (self._share, self._share + AGAIN * (1.0 - self._share))
             return
         after = self._left[self._left.index(phase) + 1 :]

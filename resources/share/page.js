@@ -5,19 +5,24 @@ const reduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 // Every corner of a panel is A + B exp(-i phi) in the frame of its neighbour: a panel turns by -a or +a, 2 a = pi - phi,
 // and is carried by a constant vector that turns the other way.
-function turns(phi) {
-  const a = (Math.PI - phi) / 2;
-  const room = Math.PI - design.phi;
-  const back = room > 0 ? design.turn * Math.max((phi - design.phi) / room, 0) : 0;
+// A sheet of several has its own angle and turn, and moves from its place while flat to that over its target.
+function sheetOf(part) {
+  return design.sheets ? design.sheets[part[3]] : [design.phi, design.turn, 0, 0, 0, 0];
+}
+
+function turns(sheet, share) {
+  const a = (Math.PI - sheet[0]) / 2 * share;
+  const back = sheet[0] < Math.PI ? sheet[1] * (1 - share) : 0;
   return [back - a, back + a];
 }
 
-function corners(part, phi) {
+function corners(part, share) {
   const [odd, carried, own] = part;
-  const both = turns(phi);
+  const sheet = sheetOf(part), left = 1 - share, both = turns(sheet, share);
   const [turn, other] = odd ? [both[1], both[0]] : both;
   const [c, s, cc, ss] = [Math.cos(turn), Math.sin(turn), Math.cos(other), Math.sin(other)];
-  const x = cc * carried[0] - ss * carried[1], y = ss * carried[0] + cc * carried[1];
+  const x = cc * carried[0] - ss * carried[1] + sheet[2] + left * (sheet[4] - sheet[2]);
+  const y = ss * carried[0] + cc * carried[1] + sheet[3] + left * (sheet[5] - sheet[3]);
   const found = [];
   for (let k = 0; k < own.length; k += 2)
     found.push(x + c * own[k] - s * own[k + 1], y + s * own[k] + c * own[k + 1]);
@@ -42,12 +47,12 @@ function draw() {
   const phi = angle();
   const texts = ["", ""];
   design.parts.forEach((part, k) => {
-    const text = path(corners(part, phi));
+    const text = path(corners(part, share));
     texts[part[0]] += text;
     if (prints.length) {
-      const both = turns(phi);
+      const sheet = sheetOf(part), both = turns(sheet, share);
       const [turn, other] = part[0] ? [both[1], both[0]] : both;
-      const flat = turns(Math.PI)[0];
+      const flat = turns(sheet, 0)[0];
       const t = turn - flat;
       const x = (Math.cos(other) - Math.cos(turn)) * part[1][0] - (Math.sin(other) - Math.sin(turn)) * part[1][1];
       const y = (Math.sin(other) - Math.sin(turn)) * part[1][0] + (Math.cos(other) - Math.cos(turn)) * part[1][1];
@@ -97,11 +102,11 @@ function element(name, attributes, parent) {
 // A print lies on the flat sheet and is cut into panels, which take their part of it with them.
 const prints = [];
 if (design.print) {
-  const group = element("g", {}, byId("sheet")), flat = turns(Math.PI);
+  const group = element("g", {}, byId("sheet"));
   element("image", { id: "print", href: byId("picture").textContent, ...design.print }, element("defs", {}, group));
   design.parts.forEach((part, k) => {
     const clip = element("clipPath", { id: "c" + k }, group);
-    element("path", { d: path(corners(part, Math.PI)) }, clip);
+    element("path", { d: path(corners(part, 0)) }, clip);
     const panel = element("g", {}, group);
     element("use", { href: "#print", "clip-path": `url(#c${k})` }, panel);
     prints.push(panel);

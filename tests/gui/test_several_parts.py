@@ -141,6 +141,27 @@ def test_that_one_press_designs_every_part_and_one_export_cuts_them_all(
 
 
 @pytest.mark.torch
+@pytest.mark.parametrize("kind", ["png", "gif", "html"])
+def test_that_a_picture_from_the_window_shows_all_parts(
+    both: MainWindow, tmp_path: Path, until: Until, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    shown: list[int] = []
+    module = {"png": "picture", "gif": "animation", "html": "share_page"}[kind]
+    name = {"png": "png", "gif": "animation", "html": "page"}[kind]
+    monkeypatch.setattr(
+        f"kirigami_studio.export.{module}.write_parts_{name}",
+        lambda parts, path: (shown.append(len(parts)), path.write_bytes(b"-")),
+    )
+    found = list[ExportedFiles]()
+    both.services.exporter.exported.connect(found.append)
+    until(lambda: both.fabrication.export.isEnabled())
+    both.services.exporter.export(tmp_path / f"letter.{kind}")
+    until(lambda: bool(found))
+    assert shown == [2] and found[0].files == (tmp_path / f"letter.{kind}",)
+    assert both.messages.messages[-1].tone is Tone.DONE
+
+
+@pytest.mark.torch
 def test_that_generate_again_is_for_the_part_that_is_shown_alone(both: MainWindow, until: Until) -> None:
     session = both.session
     before = session.document.parts

@@ -174,7 +174,7 @@ class DesignExporter(QObject):
             session.post(Message(tr("No design to export yet. Generate one first."), Tone.HINT))
             return
         name, status = tr("exporting {name}", name=path.name), tr("Exporting {name} …", name=path.name)
-        if path.suffix.lower() == ANIMATION:
+        if path.suffix.lower() == ANIMATION and not session.document.other_parts:
             session.set_status(status)
             self._write(name, partial(animating, request, path, motion, self._as_cut.state.sheet))
             return

@@ -59,7 +59,7 @@ class CuttingQuestion(QFrame):
         column(head, (self.list, 1), on=self, spacing=4, margins=(10, 6, 8, 8))
 
     def offer(self) -> None:
-        """List all machines, bundled and own ones: the usual one of each kind first, then the others by kind."""
+        """List all machines: the usual one of each kind first, then the others by kind."""
         order, about = [kind for kind, _ in KINDS], dict(KINDS)
         known = sorted(
             machines().items.values(),

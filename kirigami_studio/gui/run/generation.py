@@ -299,13 +299,14 @@ class RunPlanner:
         return replace(edit, document=target_parts.with_twins(edit.document, document.part))
 
     def summary(self, result: Result, before: Document, grid_reason: str = "", seconds: float = 0.0) -> str:
-        """Sentence of the status line on a completed run: times, best match, the reason for a grid that it chose.
+        """Sentence on a completed run: times, best match, the reason for a grid that it chose.
 
         ``seconds`` is all that it took, choices and loading included.
         """
         plan, document = self.plan, self._session.document
         if plan is None or not plan.joins:
-            score = result.best.score
+            designing = readable_time(max(seconds - result.judging_seconds, result.seconds))
+            judging = readable_time(result.judging_seconds)
             if result.best in result.refusals:
                 return tr_n(
                     "{count} design in {designing}, checked as cut in {judging}. It cannot be cut in this material and "
@@ -313,8 +314,8 @@ class RunPlanner:
                     "{count} designs in {designing}, checked as cut in {judging}. None can be cut in this material and "
                     "size: the verdict says why.",
                     len(result.candidates),
-                    designing=readable_time(max(seconds - result.judging_seconds, result.seconds)),
-                    judging=readable_time(result.judging_seconds),
+                    designing=designing,
+                    judging=judging,
                 )
             told = tr_n(
                 "{count} design in {designing}, checked as cut in {judging}: match {match:.1f} %, panels "
@@ -322,10 +323,10 @@ class RunPlanner:
                 "{count} designs in {designing}, checked as cut in {judging}. Best: match {match:.1f} %, panels "
                 "±{variation:.0f} %.",
                 len(result.candidates),
-                designing=readable_time(max(seconds - result.judging_seconds, result.seconds)),
-                judging=readable_time(result.judging_seconds),
+                designing=designing,
+                judging=judging,
                 match=100 * result.ranking.made_match(result.best),
-                variation=100 * score.evenness.area_cv,
+                variation=100 * result.best.score.evenness.area_cv,
             )
             return f"{told} {grid_reason}".strip()
         known = set(before.candidates)
@@ -442,7 +443,7 @@ class DesignRun(QObject):
 
     @property
     def seconds(self) -> float:
-        """Wall time since the run began, choices and loading included; of a completed run all that it took."""
+        """Wall time since the run began, choices and loading included."""
         return self._took or 1e-3 * self._clock.elapsed()
 
     @property

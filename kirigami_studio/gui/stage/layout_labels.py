@@ -171,7 +171,7 @@ def smallest_parts(panels: FloatArray, trimmed: frozenset[int] = frozenset()) ->
 
 
 def _off_shape(shape: QPainterPath | None, middle: QPointF, width: float, height: float) -> list[QRectF]:
-    """Boxes that touch nothing of a shape, the nearest ones first; none without one, or where none is near."""
+    """Boxes that touch nothing of a shape, the nearest ones first."""
     if shape is None:
         return []
     found = []

@@ -212,7 +212,7 @@ class TargetPresenter(QObject):
             self._show_cutting_time(self._session.document)
 
     def _show_cutting_time(self, document: Document) -> None:
-        """Warn before a run of a sheet too small for its connectors, or of hours of cutting; later the plan does."""
+        """Warn before a run of a sheet too small for its connectors, or of hours of cutting."""
         settings = document.settings
         grid = (self._grid or USUAL_GRID) if settings.auto_grid else settings.grid
         if document.target is None or document.candidates:

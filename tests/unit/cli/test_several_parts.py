@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import ezdxf
 import numpy as np
 import pytest
+from PIL import Image
 from shapely.geometry import Polygon
 
 import kirigami_studio as ks
 from kirigami_studio.cli import main
+from kirigami_studio.export.share_page import read_page
 from kirigami_studio.foundation.errors import ProjectError, UsageError
 from kirigami_studio.project.sheet_size import size_of
 from kirigami_studio.project.store import load, save
-from kirigami_studio.project.target_parts import parts_as_cut
+from kirigami_studio.project.target_parts import parts_as_cut, scale_of
 from tests.refusals import refused
 
 pytestmark = pytest.mark.torch
@@ -222,11 +225,51 @@ def test_that_fixes_are_told_for_each_part_that_fails(made, tmp_path: Path, caps
     assert asked == []
 
 
-def test_that_a_picture_says_which_part_it_shows(made, tmp_path: Path, capsys) -> None:
+def test_that_a_file_of_one_sheet_alone_says_which_part_it_shows(made, tmp_path: Path, capsys) -> None:
     folder, _ = made
-    wish = ["export", str(folder / "design.kiri"), "--out", str(tmp_path / "view.png"), "--json"]
+    wish = ["export", str(folder / "design.kiri"), "--out", str(tmp_path / "view.csv"), "--json"]
     main(wish)
     said = json.loads(capsys.readouterr().out)["warnings"]
     assert sum("'stem'" in text or "'dot'" in text for text in said) == 1
     main([*wish, "--part", "dot"])
     assert not any("'dot'" in text for text in json.loads(capsys.readouterr().out)["warnings"])
+
+
+def ink(path: Path) -> list[float]:
+    """Shares of a picture's rows, from the top, that show a panel somewhere."""
+    with Image.open(path) as picture:
+        frame = np.asarray(picture.convert("RGB"), dtype=float)
+    rows = (frame[..., 2] - frame[..., 0] > 20.0).any(axis=1)
+    return rows.tolist()
+
+
+def test_that_pictures_show_all_parts_in_the_places_of_the_drawing(made, tmp_path: Path, capsys) -> None:
+    folder, _ = made
+    for kind in ("png", "gif", "html"):
+        path = tmp_path / f"view.{kind}"
+        assert main(["export", str(folder / "design.kiri"), "--out", str(path), "--json"]) in (0, 1)
+        answer = json.loads(capsys.readouterr().out)
+        assert answer["files"] == [str(path)] and [part["name"] for part in answer["parts"]] == ["dot", "stem"]
+        assert not any("'dot'" in text or "'stem'" in text for text in answer["warnings"])
+    # The dot and the stem lie one above the other, with a gap between them: two bands of rows.
+    rows = ink(tmp_path / "view.png")
+    assert sum(one and not before for before, one in pairwise([False, *rows])) == 2
+    with Image.open(tmp_path / "view.gif") as film:
+        assert film.n_frames > 10
+    moving = read_page(tmp_path / "view.html")
+    assert {part[3] for part in moving["parts"]} == {0, 1} and len(moving["sheets"]) == 2
+    # Over the target they are where the drawing has them: the dot 29 mm above the stem's middle.
+    (_, _, _, dot, *_), (_, _, _, stem, *_) = moving["sheets"]
+    assert dot - stem == pytest.approx(answer_scale(folder) * 29.0, rel=0.1)
+
+
+def answer_scale(folder: Path) -> float:
+    return scale_of(load(folder / "design.kiri"))
+
+
+def test_that_one_part_can_still_be_pictured_alone(made, tmp_path: Path, capsys) -> None:
+    folder, _ = made
+    path = tmp_path / "dot.html"
+    main(["export", str(folder / "design.kiri"), "--out", str(path), "--part", "dot", "--json"])
+    capsys.readouterr()
+    assert "sheets" not in read_page(path)

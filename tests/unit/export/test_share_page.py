@@ -76,10 +76,12 @@ def written(job: ExportJob, folder: Path) -> tuple[Path, Scripts]:
 def moved_by_script(page: Scripts, phi: float) -> list[np.ndarray]:
     """Corners of all parts at an angle, by the page's own functions."""
     engine = QJSEngine()
-    functions = re.findall(r"^function (?:turns|corners)\(.*?^}", page.found["script"], re.S | re.M)
-    assert len(functions) == 2
+    functions = re.findall(r"^function (?:sheetOf|turns|corners)\(.*?^}", page.found["script"], re.S | re.M)
+    assert len(functions) == 3
+    target = json.loads(page.found["design"])["phi"]
+    share = (math.pi - phi) / (math.pi - target) if target < math.pi else 1.0
     engine.evaluate(f"var design = {page.found['design']};" + "\n".join(functions))
-    made = engine.evaluate(f"JSON.stringify(design.parts.map((part) => corners(part, {phi!r})))")
+    made = engine.evaluate(f"JSON.stringify(design.parts.map((part) => corners(part, {share!r})))")
     assert not made.isError(), made.toString()
     return [np.reshape(points, (-1, 2)) for points in json.loads(made.toString())]
 

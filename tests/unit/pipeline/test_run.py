@@ -291,7 +291,7 @@ def test_that_a_run_has_k_designs_however_few_poses_a_shape_offers(symmetry: str
 
 
 def test_that_the_best_designs_are_fitted_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    wish = Request(load("heart"), grid=(4, 5), k=8, polish=10)
+    wish = Request(load("heart"), grid=(4, 5), k=8, polish=10, covers=False)
     finished = best_of(wish, pool=Pool(0)).candidates
     monkeypatch.setattr("kirigami_studio.pipeline.run.FINISHED", 0)
     before = {one.index: one for one in best_of(wish, pool=Pool(0)).candidates}
