@@ -96,7 +96,7 @@ class Conditions:
         return found
 
     def _along(self, step: FloatArray, way: FloatArray, lacking: FloatArray) -> float:
-        """How far to go, as a share of a way, for the least sum: its slope along the way grows, in straight pieces."""
+        """Share of a way to the least sum, whose slope along the way grows in straight pieces."""
         gains = self.rows @ way
         stiff, pushing = gains / self.give, (lacking > 0.0) | ((lacking == 0.0) & (gains < 0.0))
         # Where each condition ceases to push, or begins to.

@@ -154,7 +154,7 @@ def for_twin(designed: Document, twin: Document) -> Document:
 
 
 def with_twins(document: Document, number: int) -> Document:
-    """The document with the designs of a part also in others of its shape and size that have none."""
+    """The document with designs of a part also in others of its shape and size without any."""
     designed, same = document.parts[number], twins(parts_as_cut(document))
     for other, part in enumerate(document.parts):
         if same[other] == same[number] and not part.candidates:

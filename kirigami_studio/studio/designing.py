@@ -446,7 +446,10 @@ def completed(run: Iterator[object], tell: Tell) -> Result:
 def ranked_as_cut(
     result: Result, cut: FabricationSettings, beside: tuple[Candidate, ...], cancel: Cancel
 ) -> Generator[Progress | Judged, None, Result]:
-    """Rank designs with those beside them; reports between the steps of every look, for others to have their turn."""
+    """Rank designs with those beside them; report between the steps of every look.
+
+    Whoever iterates may do other work at each report.
+    """
     from kirigami_studio.studio.as_cut import estimates
     from kirigami_studio.studio.verdict import CloseLook, looking
 
