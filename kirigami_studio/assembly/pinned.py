@@ -25,9 +25,10 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
 
-#: How much of what the flat outline can spare it may lose by crumbs, and where pieces are cut, and how much of the rest
-#: they may stick out of it.
-CRUMBS, MOST_LOST, MOST_BEYOND = 0.5, 0.6, 0.9
+#: How much of what the flat outline can spare crumbs may have of it, and which share of that their neighbours fill.
+CRUMBS, FILLED = 1.67, 0.3
+#: How much of what is left to spare pieces may lose where they are cut, and by how much of the rest they may stick out.
+MOST_LOST, MOST_BEYOND = 0.6, 0.9
 #: Width of a character of a label, in its heights.
 CHARACTER = 0.7
 
@@ -126,7 +127,11 @@ def pinned(
         opened = EndState.of(deployment, panels, phi, cell_mm, shown, options.reach_mm)
         closed = EndState.of(deployment, panels, math.pi, cell_mm, flat, options.reach_mm)
         # Of the flat outline of a cover there is no more than its trim leaves.
-        most = math.inf if design.trim is not None and design.trim.given_up else MOST_LOST * (spare - gone)
+        most = (
+            math.inf
+            if design.trim is not None and design.trim.given_up
+            else MOST_LOST * (spare - (1.0 - FILLED) * gone)
+        )
         trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)
         trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
         extend_to(shaping, opened, closed, 0.0)
