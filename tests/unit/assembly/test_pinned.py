@@ -336,7 +336,7 @@ def test_that_panels_the_target_shows_nothing_of_go_where_the_motion_does_not_ne
     assert len(whole.assembly.pieces) == 25
     fewer, every = check_pinned(plan, 9), check_pinned(whole, 2)
     assert fewer.figures.match > every.figures.match + 0.04
-    assert fewer.figures.flat_match > 0.93 and not codes(fewer)  # neighbours fill what went
+    assert fewer.figures.flat_match > 0.9 and not codes(fewer)
 
 
 def _pins_of(shaping: Shaping) -> IntArray:
