@@ -114,7 +114,7 @@ def _some(panels: PanelTable, stays: BoolArray) -> PanelTable:
 
 
 def _in_pairs(panels: PanelTable, hinged: BoolArray) -> BoolArray:
-    """Those corners (P, 4) of some whose node another panel has among them, too."""
+    """Corners (P, 4), of some, whose node another panel has there, too."""
     return hinged & (np.bincount(panels.corners.ravel(), hinged.ravel())[panels.corners] > 1.0)
 
 

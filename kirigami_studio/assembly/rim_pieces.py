@@ -84,7 +84,7 @@ class EndState:
         outline: Polygon,
         reach_mm: float,
     ) -> EndState:
-        """State of some panels of a design at ``phi``; what is missing where others were may be filled."""
+        """State of some panels of a design at ``phi``; places of others may be filled."""
         nodes = as_plane(deployment.nodes(phi)) * cell_mm
         voids = deployment.topology.void_nodes[kept_voids(panels, deployment.sheet.grid)]
         openings = polygons(nodes[voids])

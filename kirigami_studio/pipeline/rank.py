@@ -101,11 +101,17 @@ class Ranking:
         return candidate.score.evenness.least_feature_mm(self.width_mm) >= self.least_feature_mm
 
     def pins_apart(self, candidate: Candidate) -> bool:
-        """Whether the pins of a pinned sheet stay as far apart as they have to; where pieces were made these tell."""
+        """Whether the pins of a pinned sheet stay as far apart as they have to.
+
+        Where its pieces were made these tell.
+        """
         return candidate in self.losses or self._pins_at(candidate, 1.0)
 
     def nearly_cuttable(self, candidate: Candidate) -> bool:
-        """Whether a closer look may find that it can be cut: fits ask for more room between pins than ears need."""
+        """Whether a closer look may find that it can be cut.
+
+        Fits ask for more room between pins than ears need.
+        """
         fits = self.wide_enough(candidate) and self._pins_at(candidate, NEARLY_APART)
         return candidate.score.feasible and fits and candidate not in self.refusals
 
