@@ -77,9 +77,9 @@ def pins_in_holes(deployment: Deployment, panels: PanelTable, phi: float, shown:
 def without_crumbs(
     deployment: Deployment, panels: PanelTable, phi: float, shown: Polygon, cell_mm: float, spare: float
 ) -> PanelTable:
-    """Leave out panels that show next to nothing of the target, as long as the others keep their one motion.
+    """Leave out panels that show next to nothing of the target.
 
-    All that would stay of them is walls round pins beside the outline, and necks between these.
+    They go as long as the others keep their one motion.  All that would stay of them is walls round pins beside the outline, and necks between these.
 
     Parameters
     ----------
