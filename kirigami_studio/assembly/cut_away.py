@@ -79,7 +79,8 @@ def without_crumbs(
 ) -> PanelTable:
     """Leave out panels that show next to nothing of the target.
 
-    They go as long as the others keep their one motion.  All that would stay of them is walls round pins beside the outline, and necks between these.
+    They go as long as the others keep their one motion.  All that would stay of them is walls round pins beside the
+    outline, and necks between these.
 
     Parameters
     ----------
