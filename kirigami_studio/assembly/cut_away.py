@@ -77,9 +77,10 @@ def pins_in_holes(deployment: Deployment, panels: PanelTable, phi: float, shown:
 def without_crumbs(
     deployment: Deployment, panels: PanelTable, phi: float, shown: Polygon, cell_mm: float, spare: float
 ) -> PanelTable:
-    """Leave out panels that show next to nothing of the target and that no motion needs.
+    """Leave out panels that show next to nothing of the target.
 
-    The others keep their one motion.  All that would stay of them is walls round pins beside the outline, and necks between these.
+    They go as long as the others keep their one motion.  All that would stay of them is walls round pins beside the
+    outline, and necks between these.
 
     Parameters
     ----------
@@ -114,7 +115,7 @@ def _some(panels: PanelTable, stays: BoolArray) -> PanelTable:
 
 
 def _in_pairs(panels: PanelTable, hinged: BoolArray) -> BoolArray:
-    """Those corners (P, 4) of some whose node another panel has among them, too."""
+    """Corners (P, 4), of some, whose node another panel has there, too."""
     return hinged & (np.bincount(panels.corners.ravel(), hinged.ravel())[panels.corners] > 1.0)
 
 

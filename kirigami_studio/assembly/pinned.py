@@ -26,9 +26,10 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
 
-#: How much of what the flat outline can spare it may lose by crumbs, and where pieces are cut, and how much of the rest
-#: they may stick out of it.
-CRUMBS, MOST_LOST, MOST_BEYOND = 0.5, 0.6, 0.9
+#: How much of what the flat outline can spare crumbs may have of it, and which share of that their neighbours fill.
+CRUMBS, FILLED = 1.67, 0.3
+#: How much of what is left to spare pieces may lose where they are cut, and by how much of the rest they may stick out.
+MOST_LOST, MOST_BEYOND = 0.6, 0.9
 #: Width of a character of a label, in its heights.
 CHARACTER = 0.7
 
@@ -72,6 +73,7 @@ def pinned(
     width_mm: float,
     options: PinOptions | None = None,
     only_whole: bool = False,
+    less_crumbs: bool = True,
 ) -> PinnedPlan:
     """Make the pieces of a design.
 
@@ -85,6 +87,8 @@ def pinned(
     options : PinOptions, optional
     only_whole : bool
         Stop where a piece falls apart, which nothing that follows the notches puts right.
+    less_crumbs : bool
+        Whether panels may go of which the target shows next to nothing, unless that spoils the flat outline.
 
     Raises
     ------
@@ -112,7 +116,7 @@ def pinned(
         unwanted = pins_in_holes(deployment, panels, phi, shown, cell_mm)
         needless = [] if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
         fewer = panels
-        if not options.in_one_plane and options.weight >= 0.5:
+        if less_crumbs and not options.in_one_plane and options.weight >= 0.5:
             fewer = without_crumbs(deployment, panels, phi, shown, cell_mm, CRUMBS * spare)
         shaping = Shaping.of(deployment, cell_mm, phi, options, fewer, unwanted, needless)
         if fewer is not panels and shaping.faults:
@@ -128,7 +132,8 @@ def pinned(
         opened = EndState.of(deployment, panels, phi, cell_mm, shown, options.reach_mm)
         closed = EndState.of(deployment, panels, math.pi, cell_mm, flat, options.reach_mm)
         # Of the flat outline of a cover there is no more than its trim leaves.
-        most = math.inf if design.trim is not None and design.trim.given_up else MOST_LOST * (spare - gone)
+        covers = design.trim is not None and design.trim.given_up > 0
+        most = math.inf if covers else MOST_LOST * (spare - (1.0 - FILLED) * gone)
         trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)
         trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
         extend_to(shaping, opened, closed, 0.0)
@@ -138,6 +143,8 @@ def pinned(
         round_off(shaping, (opened, closed))
         if shown.interiors:  # necks that lead through holes may be joined by what was added
             trim_to(shaping, opened, closed, 0.0)
+        if gone and not covers and closed.missing(shaping) > spare:
+            return pinned(design, target, width_mm, options, only_whole, less_crumbs=False)
     assembly = assembled(shaping, deployment, cell_mm, phi)
     names = [piece.id for piece in assembly.pieces]
     ears, _, distance = shaping.ear_distances

@@ -84,13 +84,10 @@ class EndState:
         outline: Polygon,
         reach_mm: float,
     ) -> EndState:
-        """State of some panels of a design at ``phi``; without the others the flat sheet is open."""
+        """State of some panels of a design at ``phi``; places of others may be filled."""
         nodes = as_plane(deployment.nodes(phi)) * cell_mm
         voids = deployment.topology.void_nodes[kept_voids(panels, deployment.sheet.grid)]
         openings = polygons(nodes[voids])
-        if phi == math.pi:
-            every = deployment.topology.panel_nodes.reshape(-1, 4)
-            openings = np.append(openings, polygons(nodes[np.delete(every, panels.index, axis=0)]))
         openings = openings[shapely.area(openings) > LEAST_PART]
         return cls(math.pi - phi, outline, shapely.union_all(openings), _rim_shares(nodes, panels, reach_mm))
 

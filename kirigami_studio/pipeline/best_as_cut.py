@@ -84,7 +84,7 @@ def best_as_cut(
         one: Note.of("rank.jams", own=math.degrees(jams[one])) for one in jams if known.ranking.missed(one) > 0.0
     }
     losses: dict[Candidate, float] = {}
-    hopeful = [one for one in known.candidates if known.ranking.cuttable(one) and one not in refusals]
+    hopeful = [one for one in known.candidates if known.ranking.nearly_cuttable(one) and one not in refusals]
     most = min(len(hopeful), MOST_LOOKED_AT)
     for number in range(most):
         left = [one for one in hopeful if one not in refusals]

@@ -52,6 +52,9 @@ SYMMETRY_SEEN = (0.95, 0.975)
 GIVEN_UP = 0.1
 #: The same of pinned sheets: pieces of whole ones are cut along the target, too, and show both ends of the motion.
 GIVEN_UP_ON_PINS = 0.25
+#: Share of the distance of pins from which on pieces are made and checked: of seven sheets of an hourglass from a disk
+#: none kept it, by 1 % at most, and the pieces of the best had nothing to be said of their pins.
+NEARLY_APART = 0.97
 #: IoU that a sheet which comes to its angle is worth over one that stays flat: jamming at 36 of 180 degrees costs 5 %.
 JAMMING = 0.25
 
@@ -98,8 +101,23 @@ class Ranking:
         return candidate.score.evenness.least_feature_mm(self.width_mm) >= self.least_feature_mm
 
     def pins_apart(self, candidate: Candidate) -> bool:
-        """Whether the pins of a pinned sheet stay as far apart as they have to."""
-        least = self.least_gap_mm * candidate.score.evenness.width / self.width_mm
+        """Whether the pins of a pinned sheet stay as far apart as they have to.
+
+        Where its pieces were made these tell.
+        """
+        return candidate in self.losses or self._pins_at(candidate, 1.0)
+
+    def nearly_cuttable(self, candidate: Candidate) -> bool:
+        """Whether a closer look may find that it can be cut.
+
+        Fits ask for more room between pins than ears need.
+        """
+        fits = self.wide_enough(candidate) and self._pins_at(candidate, NEARLY_APART)
+        return candidate.score.feasible and fits and candidate not in self.refusals
+
+    def _pins_at(self, candidate: Candidate, share: float) -> bool:
+        """Whether pins keep this share of their distance."""
+        least = share * self.least_gap_mm * candidate.score.evenness.width / self.width_mm
         return not least or candidate.least_gap >= least - GAP_ROUNDING
 
     def pins_note(self, candidate: Candidate) -> Note:

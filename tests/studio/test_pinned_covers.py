@@ -56,7 +56,7 @@ def test_that_pieces_of_a_cover_show_notches_that_whole_sheets_fill(
     assert ranking.pins_apart(cover) and look.refusal is None
     figures = assembled(cover, PLYWOOD, clover, only_whole=True).report.figures
     assert figures.match > 0.95  # the best of 32 fits to the target itself: 0.90
-    assert figures.flat_match > 0.87
+    assert figures.flat_match > 0.905  # neighbours fill what went: 0.896 where they do not
     assert figures.overlap_mm2 <= 0.01
 
 

@@ -62,6 +62,16 @@ def pinned_run() -> Result:
     return Result(Request(target, (3, 3), k=6, regular=0.0, polish=0, least_gap_mm=5.0), tuple(candidates), 6, 0.0)
 
 
+def test_that_pieces_are_made_where_pins_are_nearly_as_far_apart_as_asked_and_decide(pinned_run: Result) -> None:
+    near = pinned_run.candidates[0]
+    gap_mm = near.least_gap * 100.0 / near.score.evenness.width  # of a sheet 100 mm wide
+    for asked, looked_at in ((1.02, True), (1.1, False)):
+        request = replace(pinned_run.request, least_gap_mm=asked * gap_mm)
+        result, seen = ranked(replace(pinned_run, request=request, candidates=(near,)), {near: pieces(0.99, 0.96)})
+        assert bool(seen) is looked_at and result.ranking.pins_apart(near) is looked_at
+        assert not result.ranking.pins_apart(replace(near, index=9))
+
+
 def ranked(run: Result, looks: Looks) -> tuple[Result, list[int]]:
     """The run ranked where these designs do so as cut, and the numbers of those that were looked at."""
     seen: list[int] = []
