@@ -123,6 +123,7 @@ def test_that_millimetres_come_back_everywhere(inches: MainWindow) -> None:
 
 def test_that_labels_on_drawings_and_the_rulers_are_in_inches(inches: MainWindow) -> None:
     stage, cuts, board = inches.stage.view, inches.cuts.view, inches.target.view
+    inches.resize(1400, 900)  # areas have room
     chips = [chip.text for chip, _ in stage.legend(stage.fontMetrics())]
     assert chips and any("in²" in text for text in chips)
     assert not any(MM.search(text) for text in chips)

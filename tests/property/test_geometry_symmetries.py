@@ -150,8 +150,13 @@ def test_that_ratios_alone_or_the_rim_alone_are_not_enough(member: Symmetry, gri
 @given(grid_symmetries(), st.integers(0, 1000))
 def test_that_the_basis_spans_the_symmetric_states(symmetry: GridSymmetry, seed: int) -> None:
     z, offsets = rough_state(symmetry, seed)
-    state = np.concatenate([z.ravel(), offsets])
-    nearest = np.concatenate([symmetry.symmetric(z).ravel(), symmetry.symmetric_offsets(offsets)])
+    count = z.size + offsets.size
+    hinges = np.random.default_rng(seed).uniform(-0.4, 0.4, symmetry.source.shape[1] - count)
+    state = np.concatenate([z.ravel(), offsets, hinges])
+    images = [sign * state[source] for source, sign in zip(symmetry.source, symmetry.sign, strict=True)]
+    nearest = np.mean([state, *images], axis=0)
+    moved = np.concatenate([symmetry.symmetric(z).ravel(), symmetry.symmetric_offsets(offsets)])
+    assert np.abs(nearest[:count] - moved).max() < 1e-12
     basis = symmetry.basis.toarray()
     squares = basis.T @ basis
     assert np.array_equal(squares, np.diag(np.diag(squares))) and np.diag(squares).min() >= 1
