@@ -48,6 +48,7 @@ class CutMotion:
     #: cut is measured; None where it has no target
     laid: Similarity | None = None
     made: Deployment | None = None  #: the sheet that is cut where that is not quite the design
+    covered: shapely.Polygon | None = None  #: mm; its area at ``reached``, where that was found
 
     @property
     def jams(self) -> bool:
@@ -102,8 +103,10 @@ class CutMotion:
     def area(self, design: PosedDesign, phi: float) -> shapely.Polygon:
         """Panels and voids of that pose, with openings inside: what the match as cut is measured of."""
         phi = max(phi, self.reached) if self.jams else phi
-        motion = carried_on(self.closing, design.deployment, self.width_mm, phi)
-        covered = covered_area(design.deployment, self.closing.sheet.network, self.width_mm, motion)
+        covered = self.covered if phi == self.reached else None
+        if covered is None:
+            motion = carried_on(self.closing, design.deployment, self.width_mm, phi)
+            covered = covered_area(design.deployment, self.closing.sheet.network, self.width_mm, motion, brief=True)
         laid: shapely.Polygon = shapely.transform(covered, self._placed(design, phi).apply)
         return laid
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import shapely
@@ -202,11 +203,15 @@ def silhouette(deployment: Deployment, network: PanelNetwork, width_mm: float, m
     return np.asarray(shapely.get_coordinates(area.exterior)[:-1], dtype=np.float64)
 
 
-def covered_area(deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray) -> shapely.Polygon:
+def covered_area(
+    deployment: Deployment, network: PanelNetwork, width_mm: float, motion: FloatArray, brief: bool = False
+) -> shapely.Polygon:
     """Area, mm, of all panels and voids after a motion (P, 3), with openings inside.
 
     Corners that panels share lie halfway between theirs where a connector is stretched.  Voids beside a trimmed panel
-    are left out, because they may reach beyond it.
+    are left out, because they may reach beyond it.  Where it is to be ``brief``, as for pictures on the way, cracks are
+    bridged with sharp corners and nothing is snapped to a grid: that takes a quarter of the time and is off by 2e-7 of
+    the area at 24 x 24 voids with connectors of 0.2 mm, by 3e-4 at 6 x 6 with 0.8 mm that jam (tried once).
     """
     tables = deployment.topology
     nodes, corners, table = moved_nodes(deployment, network, width_mm, motion)
@@ -222,8 +227,13 @@ def covered_area(deployment: Deployment, network: PanelNetwork, width_mm: float,
     grid, crack = 1e-6 * width_mm, float(np.linalg.norm(corners - nodes[table], axis=-1).max())
     bridge = max(crack, CRACK * network.panel_size) if crack > ROUNDED * grid else 0.0
     bridge = bridge if network.numbers is None else max(bridge, BRIDGED * network.panel_size)
-    united = shapely.union_all(shapely.buffer(parts, bridge) if bridge else parts, grid_size=grid)
-    united = shapely.buffer(united, -bridge) if bridge else united
+    if bridge:
+        style: Literal["mitre", "round"] = "mitre" if brief else "round"
+        bridged = shapely.buffer(parts, bridge, join_style=style)
+        united = shapely.union_all(bridged, grid_size=None if brief else grid)
+        united = shapely.buffer(united, -bridge, join_style=style)
+    else:
+        united = shapely.union_all(parts, grid_size=grid)
     largest: shapely.Polygon = max(shapely.get_parts(united), key=lambda part: float(part.area))
     return largest
 

@@ -204,6 +204,7 @@ class SimulatedSheet:
     made: Deployment | None = None  #: The sheet that is cut where that is not quite the design
     #: Lays it where it comes to upon the target, from the network's frame (mm): the pose of its match as cut
     laid: Similarity | None = None
+    covered: shapely.Polygon | None = None  #: Its area there, see ``closing.covered_area``
 
     def stretch_at(self, phi: float) -> FloatArray:
         """Stretch (H,) of the connectors at an angle (radians), in their widths; the last that was found beyond it."""
@@ -220,7 +221,9 @@ class SimulatedSheet:
     def motion(self) -> CutMotion:
         """What pictures and animations show of it."""
         found = self.as_cut
-        return CutMotion(self.closing, self.width_mm, found.jam_phi, found.reached, self.panels, self.laid, self.made)
+        return CutMotion(
+            self.closing, self.width_mm, found.jam_phi, found.reached, self.panels, self.laid, self.made, self.covered
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -233,6 +236,7 @@ class Overlap:
     iou_forced: float
     iou_ideal: float
     laid: Similarity  #: pose (mm to the target's frame) of the first
+    covered: shapely.Polygon  #: mm; area of the sheet there
 
 
 # the sheet as a network -----------------------------------------------------------------------------------------------
@@ -616,7 +620,8 @@ def simulate(
     node = table.hinge_node[plan.hinges.finished_mm > 0.0]
     panels = cut_panels(plan).moved(_shift_of(plan, panels_in_mm(deployment, kept or (), width_mm, np.zeros(2))))
     as_cut = replace(_simulated(plan, found, jam, phi, lap), source=source)
-    return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made, None if lap is None else lap.laid)
+    shown = (None, None) if lap is None else (lap.laid, lap.covered)
+    return SimulatedSheet(as_cut, found, node, width_mm, panels, plan.made, *shown)
 
 
 def _closed_with_contacts(
@@ -745,4 +750,4 @@ def overlap(
         near = CutMotion(found, width_mm, jam, reached, NO_PANELS).nearest(posed, reached)
     as_cut, laid = pose_of_area(areas[0], target, near)
     ideal, *shut = (iou_of_area(area, target) for area in areas[1:])
-    return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal, laid)
+    return Overlap(reached, as_cut, end, shut[0] if shut else math.nan, ideal, laid, areas[0])

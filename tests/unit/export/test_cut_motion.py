@@ -14,6 +14,7 @@ from shapely.geometry import LineString, Polygon
 
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import siou_of_many
+from kirigami_studio.export import cut_motion
 from kirigami_studio.export.animation import LETTERS, OVERSTRETCHED, animation_frames, write_animation
 from kirigami_studio.export.cut_motion import CutMotion
 from kirigami_studio.export.exporter import ExportJob
@@ -24,6 +25,7 @@ from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.lattice.ratio_field import RatioField
+from kirigami_studio.mechanics.closing import carried_on, covered_area
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.as_cut import simulate
@@ -101,6 +103,26 @@ def test_that_a_sheet_as_cut_is_moved_by_its_connectors_at_every_angle(centred: 
                           - np.abs(np.subtract.outer(other @ (1, 1j), other @ (1, 1j)))) < 1e-9  # fmt: skip
         apart = np.linalg.norm(pose.connectors[:, 1] - pose.connectors[:, 0], axis=1)
         assert apart.max() * mm < 0.1
+
+
+def test_that_the_area_of_the_match_is_kept_and_others_are_found_briefly(
+    straight: ExportJob, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    motion, posed = motion_of(straight), straight.posed
+    network = motion.closing.sheet.network
+    asked: list[bool] = []
+
+    def counted(*given: object, brief: bool = False) -> Polygon:
+        asked.append(brief)
+        return covered_area(*given, brief=brief)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(cut_motion, "covered_area", counted)
+    here = carried_on(motion.closing, posed.deployment, WIDTH, motion.reached)
+    kept = replace(motion, covered=covered_area(posed.deployment, network, WIDTH, here))
+    assert kept.area(posed, 0.0).area == pytest.approx(motion.area(posed, 0.0).area, rel=1e-3)
+    assert asked == [True]
+    kept.area(posed, motion.reached + 0.1)
+    assert asked == [True, True]
 
 
 def test_that_a_sheet_that_jams_is_shown_no_further(straight: ExportJob) -> None:
