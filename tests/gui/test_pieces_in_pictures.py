@@ -91,7 +91,14 @@ def test_that_earlier_pieces_are_shown_until_those_of_another_size_are_there(pin
 def test_that_table_and_comparison_show_the_same_pieces(
     pinned: MainWindow, until: Until, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    until(lambda: all_made(pinned))
+    # The chosen design's are made for its files as well, and then are those of its card.
+    until(
+        lambda: (
+            all_made(pinned)
+            and pinned.fabrication.export.isEnabled()
+            and pinned.services.verdict.state.verdict is not None
+        )
+    )
     drawn: list[object] = []
     draw = design_table.states_pixmap
 
