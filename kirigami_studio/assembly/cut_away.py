@@ -37,8 +37,8 @@ MOSTLY = 0.5
 LEAST_GAIN_MM2, ROUNDS = 1.0, 3
 #: A symmetric sheet keeps its symmetry where panels lie in holes by shares that differ by no more from their images'.
 ALIKE = 0.1
-#: Panels of which the target shows no more than this share are crumbs: links beside the outline that nobody wants.
-CRUMB = 0.2
+#: Panels of which the target shows no more than this share go where they can: links beside the outline.
+HARDLY_SHOWN = 0.2
 
 
 def panels_left(design: PosedDesign, shown: Polygon, cell_mm: float, options: PinOptions) -> PanelTable:
@@ -74,7 +74,7 @@ def pins_in_holes(deployment: Deployment, panels: PanelTable, phi: float, shown:
     return found
 
 
-def without_crumbs(
+def without_hardly_shown(
     deployment: Deployment, panels: PanelTable, phi: float, shown: Polygon, cell_mm: float, spare: float
 ) -> PanelTable:
     """Leave out panels that show next to nothing of the target.
@@ -99,7 +99,7 @@ def without_crumbs(
     share = shapely.area(shapely.intersection(placed, Polygon(shown.exterior))) / area
     stays = np.ones(len(area), dtype=np.bool_)
     for index in np.argsort(share, kind="stable"):
-        if share[index] > CRUMB or area[index] > spare:
+        if share[index] > HARDLY_SHOWN or area[index] > spare:
             continue
         stays[index] = False
         if freedom(LayerMotion.of(deployment, cell_mm, phi, panels=_some(panels, stays))) == 1:

@@ -10,7 +10,7 @@ import shapely
 from shapely import affinity
 from shapely.geometry import Polygon
 
-from kirigami_studio.assembly.cut_away import panels_left, pins_in_holes, without_crumbs
+from kirigami_studio.assembly.cut_away import panels_left, pins_in_holes, without_hardly_shown
 from kirigami_studio.assembly.motion import LayerMotion, polygons
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
@@ -26,8 +26,9 @@ from kirigami_studio.lattice.deployment import Deployment
 from kirigami_studio.lattice.sheet import RimPath
 from kirigami_studio.outlines.outline import Outline
 
-#: How much of what the flat outline can spare crumbs may have of it, and which share of that their neighbours fill.
-CRUMBS, FILLED = 1.67, 0.3
+#: Area of panels that are dropped because the target hardly shows them: at most so many times what the flat outline can
+#: spare, because their neighbours fill about this share of it.
+DROPPED, FILLED = 1.67, 0.3
 #: How much of what is left to spare pieces may lose where they are cut, and by how much of the rest they may stick out.
 MOST_LOST, MOST_BEYOND = 0.6, 0.9
 #: Width of a character of a label, in its heights.
@@ -73,7 +74,7 @@ def pinned(
     width_mm: float,
     options: PinOptions | None = None,
     only_whole: bool = False,
-    less_crumbs: bool = True,
+    drop_hardly_shown: bool = True,
 ) -> PinnedPlan:
     """Make the pieces of a design.
 
@@ -87,8 +88,8 @@ def pinned(
     options : PinOptions, optional
     only_whole : bool
         Stop where a piece falls apart, which nothing that follows the notches puts right.
-    less_crumbs : bool
-        Whether panels may go of which the target shows next to nothing, unless that spoils the flat outline.
+    drop_hardly_shown : bool
+        Whether panels may be dropped that the target hardly shows, unless that spoils the flat outline.
 
     Raises
     ------
@@ -116,15 +117,15 @@ def pinned(
         unwanted = pins_in_holes(deployment, panels, phi, shown, cell_mm)
         needless = [] if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
         fewer = panels
-        if less_crumbs and not options.in_one_plane and options.weight >= 0.5:
-            fewer = without_crumbs(deployment, panels, phi, shown, cell_mm, CRUMBS * spare)
+        if drop_hardly_shown and not options.in_one_plane and options.weight >= 0.5:
+            fewer = without_hardly_shown(deployment, panels, phi, shown, cell_mm, DROPPED * spare)
         shaping = Shaping.of(deployment, cell_mm, phi, options, fewer, unwanted, needless)
         if fewer is not panels and shaping.faults:
             whole = Shaping.of(deployment, cell_mm, phi, options, panels, unwanted, needless)
             shaping = min(shaping, whole, key=lambda one: one.faults)
             fewer = fewer if shaping is not whole else panels
-        crumbs = panels.corners[~np.isin(panels.index, fewer.index)]
-        gone = float(np.sum(shapely.area(polygons(as_plane(deployment.nodes(math.pi))[crumbs] * cell_mm))))
+        dropped = panels.corners[~np.isin(panels.index, fewer.index)]
+        gone = float(np.sum(shapely.area(polygons(as_plane(deployment.nodes(math.pi))[dropped] * cell_mm))))
         panels = fewer
         if only_whole and shaping.broken:
             first = piece_names(shaping.motion)[min(shaping.broken)]
@@ -144,7 +145,7 @@ def pinned(
         if shown.interiors:  # necks that lead through holes may be joined by what was added
             trim_to(shaping, opened, closed, 0.0)
         if gone and not covers and closed.missing(shaping) > spare:
-            return pinned(design, target, width_mm, options, only_whole, less_crumbs=False)
+            return pinned(design, target, width_mm, options, only_whole, drop_hardly_shown=False)
     assembly = assembled(shaping, deployment, cell_mm, phi)
     names = [piece.id for piece in assembly.pieces]
     ears, _, distance = shaping.ear_distances

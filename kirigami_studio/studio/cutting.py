@@ -23,9 +23,11 @@ from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.fabricate.slits import cut_table
 from kirigami_studio.fabricate.tiles import TileSizes
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import FabricationError, UsageError
+from kirigami_studio.foundation.errors import FabricationError, KirigamiError, UsageError
 from kirigami_studio.lattice.deployment import Deployment, deploy
 from kirigami_studio.mechanics.connectors import flexure_length
+from kirigami_studio.outlines.starts import RECTANGLE, StartShape
+from kirigami_studio.polish.flat_sheet import width_in_cells
 from kirigami_studio.settings.design import USUAL_GRID
 from kirigami_studio.settings.fabrication import (
     FabricationSettings,
@@ -73,15 +75,22 @@ def expected_seconds(settings: FabricationSettings, grid: tuple[int, int] = USUA
     return material.passes * (length / speed + cuts * (switching + moving))
 
 
-def least_width_mm(settings: FabricationSettings, cells: float) -> float:
-    """Least width (mm) of a sheet so many cells wide for its connectors; 0 on pins.
+def times_too_small(settings: FabricationSettings, grid: tuple[int, int], start: StartShape) -> float:
+    """How many times larger a sheet has to be for its connectors before it is designed.
 
-    Raises
-    ------
-    FabricationError
-        No such material.
+    Returns
+    -------
+    float
+        At most 1 where it is large enough, on pins, and where that cannot be said: for an unknown material, or a start
+        that folds.
     """
-    return 0.0 if is_pinned(settings) else ROOMY * room_mm(settings) * cells
+    if is_pinned(settings):
+        return 0.0
+    try:
+        cells = width_in_cells(grid, RECTANGLE if start.is_auto else start)
+        return ROOMY * room_mm(settings) * cells / settings.width_mm
+    except KirigamiError:
+        return 0.0
 
 
 def plan_of(

@@ -183,10 +183,10 @@ def placed_layouts(document: Document) -> list[PlacedLayout]:
     from kirigami_studio.export.picture import PlacedLayout
     from kirigami_studio.project.store import packed_designs
 
-    scale, found = scale_of(document), []
+    scale, record, found = scale_of(document), packed_designs(document), []
     for request in part_requests(document):
         assert request.document is not None  # a request of a project has it
-        job = replace(picture_job(request), record=packed_designs(document))
+        job = replace(picture_job(request), record=record)
         place = scale * np.array(request.document.place or (0.0, 0.0))
         pieces = job.pieces
         mm = job.posed.mm_per_world(request.settings.width_mm) if pieces is None else pieces.mm_per_world

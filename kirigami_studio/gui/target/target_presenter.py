@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial
 
 from PySide6.QtCore import QObject
@@ -25,13 +24,12 @@ from kirigami_studio.gui.target.target_view import Tool
 from kirigami_studio.gui.target.targeting import StartReader, Targeting
 from kirigami_studio.gui.widgets.readable import rough_time
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.outlines.starts import RECTANGLE, StartShape
-from kirigami_studio.polish.flat_sheet import width_in_cells
+from kirigami_studio.outlines.starts import StartShape
 from kirigami_studio.project import edits
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.sheet_size import size_of, target_as_cut
 from kirigami_studio.settings.design import USUAL_GRID
-from kirigami_studio.studio.cutting import expected_seconds, least_width_mm
+from kirigami_studio.studio.cutting import expected_seconds, times_too_small
 from kirigami_studio.studio.designing import limit_of
 from kirigami_studio.studio.two_states import flat_size, starts_as
 
@@ -218,20 +216,18 @@ class TargetPresenter(QObject):
         if document.target is None or document.candidates:
             self._panel.show_cutting_time("", "")
             return
-        cut, start = document.fabrication, settings.start
-        with suppress(KirigamiError):  # a material is gone, or the start folds, which the plan and the run tell
-            cells = width_in_cells(grid, RECTANGLE if start.is_auto else start)
-            needed = least_width_mm(cut, cells)
-            if cut.width_mm < needed:
-                sentence = tr(
-                    "This size is too small for connectors in this material on {rows} \N{MULTIPLICATION SIGN} "
-                    "{columns} voids: make it {times:.1f} times larger, or take fewer voids.",
-                    rows=grid[0],
-                    columns=grid[1],
-                    times=math.ceil(10.0 * needed / cut.width_mm) / 10.0,
-                )
-                self._panel.show_cutting_time(sentence, tr("Too small for this material."))
-                return
+        cut = document.fabrication
+        times = times_too_small(cut, grid, settings.start)
+        if times > 1.0:
+            sentence = tr(
+                "This size is too small for connectors in this material on {rows} \N{MULTIPLICATION SIGN} "
+                "{columns} voids: make it {times:.1f} times larger, or take fewer voids.",
+                rows=grid[0],
+                columns=grid[1],
+                times=math.ceil(10.0 * times) / 10.0,
+            )
+            self._panel.show_cutting_time(sentence, tr("Too small for this material."))
+            return
         seconds = expected_seconds(cut, grid)
         if seconds < LONG_CUT:
             self._panel.show_cutting_time("", "")

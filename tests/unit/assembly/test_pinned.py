@@ -366,7 +366,7 @@ def test_that_panels_the_target_shows_nothing_of_go_where_the_motion_does_not_ne
     left = {"panel", "corners", "nodes", "layer", "plane", "drift", "sense"}
     some = replace(motion, hinged=hinged[panels], **{name: getattr(motion, name)[panels] for name in left})
     assert freedom(some) == 1
-    monkeypatch.setattr("kirigami_studio.assembly.pinned.CRUMBS", 0.0)
+    monkeypatch.setattr("kirigami_studio.assembly.pinned.DROPPED", 0.0)
     whole = pinned(design, target, 200.0, sizes)
     assert len(whole.assembly.pieces) == 25
     fewer, every = check_pinned(plan, 9), check_pinned(whole, 2)
