@@ -45,13 +45,13 @@ class MachineChooser(QObject):
     def reload(self) -> None:
         """Read machines and materials again."""
         self._machines, self._library = machines().items, library().items
-        with QSignalBlocker(self.machine):
+        with QSignalBlocker(self.machine), QSignalBlocker(self.material):
             self.machine.clear()
             self.machine.addItem(tr(USUAL), "")
             for key, machine in sorted(self._machines.items(), key=_shown_name):
                 self.machine.addItem(tr(machine.name), key)
                 self.machine.setItemData(self.machine.count() - 1, tr(machine.note), Qt.ItemDataRole.ToolTipRole)
-        self._offer_materials(None)
+            self.material.clear()
         self.show_settings(self._settings)
 
     def show_settings(self, settings: FabricationSettings) -> Material | None:
@@ -99,12 +99,10 @@ class MachineChooser(QObject):
         if [self.material.itemData(row) for row in range(self.material.count())] != [key for key, _ in listed]:
             with QSignalBlocker(self.material):
                 self.material.clear()
-                for key, _ in listed:
-                    self.material.addItem("", key)
-        for row, (_, material) in enumerate(listed):
-            note = note_on(material, FabricationSettings())
-            self.material.setItemText(row, tr(material.name))
-            self.material.setItemData(row, None if note is None else note.text, Qt.ItemDataRole.ToolTipRole)
+                for row, (key, material) in enumerate(listed):
+                    note = note_on(material, FabricationSettings())
+                    self.material.addItem(tr(material.name), key)
+                    self.material.setItemData(row, None if note is None else note.text, Qt.ItemDataRole.ToolTipRole)
         return offered
 
     def _take_machine(self, index: int) -> None:
