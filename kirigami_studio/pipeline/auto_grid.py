@@ -278,7 +278,7 @@ def predicted_for(request: Request) -> GridChoice:
         FINEST,
         request.start,
         request.least_gap_mm,
-        request.upright,
+        request.two_layers,
     )
 
 
@@ -319,13 +319,13 @@ def known_for(request: Request) -> GridChoice:
 def _key(request: Request) -> Hashable:
     """What a choice depends on."""
     sheet = (request.width_mm, request.least_feature_mm, request.least_gap_mm, request.fit_options.free_rim)
-    return request.target, request.phi, request.symmetry, request.start, request.upright, *sheet
+    return request.target, request.phi, request.symmetry, request.start, request.two_layers, *sheet
 
 
 def _tried(request: Request, trials: Trials) -> GridChoice:
     target, start, symmetry = request.silhouette, request.start, request.symmetry
     choice = predicted_for(request)
-    if request.upright:
+    if request.two_layers:
         return _tried_upright(request, choice, trials)
     hard = choice.code in ("grid.best_expected", "grid.finer_for_holes") and choice.predicted_match < TRIED_BELOW
     if not hard or request.pinned or not choice.poses or choice.poses[0].angle is None:

@@ -152,7 +152,7 @@ def test_that_sheets_on_pins_are_upright_for_long_shapes_and_have_no_more_pieces
 
 def test_that_short_fits_decide_whether_a_sheet_on_pins_is_square_or_upright() -> None:
     def chosen(name: str) -> GridChoice:
-        return chosen_for(Request(load(name), None, k=4, polish=0, width_mm=240.0, least_gap_mm=9.0, upright=True))
+        return chosen_for(Request(load(name), None, k=4, polish=0, width_mm=240.0, least_gap_mm=9.0, two_layers=True))
 
     cross, arrow = chosen("cross"), chosen("arrow")
     assert cross.grid == (8, 8) and cross.code == arrow.code == "grid.best_tried"
