@@ -30,7 +30,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.symmetry import TOLERANCE
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import TrialTask
-from kirigami_studio.polish.continuation import first_angles, sparingly
+from kirigami_studio.polish.continuation import first_angles
 from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries, symmetric_poses
@@ -67,7 +67,7 @@ FINER_LIMIT, FINER_PANELS = 24, 312
 TRIED_POSES = 2
 #: The same of pinned sheets that may be upright, and how many of their grids are tried.
 UPRIGHT_POSES, UPRIGHT_TRIED = 6, 3
-TRIAL = sparingly(FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
+TRIAL = (FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
 #: Proportions of sheets (logarithm of height over width) lie between the square and the shape's own, give or take this.
