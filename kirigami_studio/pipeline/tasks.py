@@ -142,7 +142,7 @@ def polished(request: Request, tasks: Sequence[PolishTask], stopped: Callable[[]
 class GuidedTask:
     """Fit the uniform sheet to the target from one pose; the design gets the number ``index``.
 
-    A pinned one begins with the pinwheel of a ``hand``, 1 or -1.
+    A pinned one begins with the pinwheel of a ``hand``, 1 or -1.  ``phases`` take the place of those of the way.
     """
 
     index: int
@@ -150,6 +150,7 @@ class GuidedTask:
     symmetry: Symmetry | None
     way: Way
     hand: int = 0
+    phases: tuple[FitPhase, ...] = ()
 
     @property
     def pose(self) -> tuple[float, Symmetry | None, int]:
@@ -162,7 +163,7 @@ class GuidedTask:
         with one_blas_thread():
             target = fit_target(request, self.symmetry)
             fit = fit_from_uniform(
-                target, grid, request.phi, self.angle, self.way, options, self.symmetry, stopped, self.hand
+                target, grid, request.phi, self.angle, self.way, options, self.symmetry, stopped, self.hand, self.phases
             )
         (found,) = scored(request, [fit.sheet], self.index, Origin.GUIDED, fitted=True)
         return TaskResult(found, fit.evaluations + 1)
