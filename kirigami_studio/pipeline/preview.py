@@ -1,27 +1,26 @@
 """A first design of a target in a fraction of a second, then better ones: previews while a target is drawn.
 
 One short fit from the uniform sheet on the grid that a run is expected to take, then the first of those fits from the
-uniform sheet that a run begins with, one after the other in one worker process.  Nothing is sampled, trimmed or judged
-as cut, and no run depends on it.
+uniform sheet that a run begins with, one after the other in one worker process.  Nothing is sampled, scored, trimmed or
+judged as cut, and no run depends on it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.outlines.starts import RECTANGLE
 from kirigami_studio.pipeline.auto_grid import FINEST, TRIAL, known_for
 from kirigami_studio.pipeline.pool import Pool, shared_pool
-from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import AGREED, Watch, answers, fits_from_uniform
-from kirigami_studio.pipeline.tasks import GuidedTask
+from kirigami_studio.pipeline.tasks import GuidedTask, TaskResult, match_and_worth
 from kirigami_studio.polish.continuation import Way, coarser, sparingly
+from kirigami_studio.polish.levenberg import Fit
 from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.settings.design import POLISH_STEPS
 
@@ -67,7 +66,40 @@ def preview_request(request: Request) -> Request:
     )
 
 
-def preview(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Candidate]:
+@dataclass(frozen=True, slots=True)
+class Previewed:
+    """A sheet that was fitted to a target, and nothing else found out about it."""
+
+    fit: Fit
+    match: float  #: Exact IoU with the filled target, in the pose of the fit
+    worth: float  #: The same less the price of uneven panels
+
+
+@dataclass(frozen=True, slots=True)
+class PreviewResult(TaskResult):
+    """What came of a :class:`PreviewTask`."""
+
+    previewed: Previewed | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PreviewTask:
+    """A fit from the uniform sheet as a task of a run begins it, by other ``phases`` where there are some.
+
+    Scoring it as a design would take as long as half of a short fit.
+    """
+
+    beginning: GuidedTask
+    phases: tuple[FitPhase, ...] = ()
+
+    def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
+        """Fit, and measure the sheet in the pose of the fit."""
+        fit = self.beginning.fitted(request, stopped, self.phases)
+        match, worth = match_and_worth(fit, request)
+        return PreviewResult(None, fit.evaluations + 1, previewed=Previewed(fit, match, worth))
+
+
+def preview(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Previewed]:
     """A first design of a request, then better ones: each is worth more than the one before.
 
     They show the target with its holes filled, which a run cuts out of its best designs.
@@ -90,18 +122,17 @@ def preview(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
     """
     request = preview_request(request)
     request = request.resolved(known_for(request).grid)
-    request = replace(request, target=request.silhouette)
     fits = _Fits(request, Watch(cancel, 0.0), pool or shared_pool())
     tasks = fits_from_uniform(request)
-    ranking, best = Ranking.of(request), fits.first_look(tasks[0])
+    best = fits.first_look(tasks[0])
     yield best
     worth: list[float] = []
     for task in tasks[:REFINED]:
-        found = fits.done(request, task)
-        if ranking.key(found) < ranking.key(best):
+        found = fits.done(request, PreviewTask(task))
+        if found.worth > best.worth:
             best = found
             yield best
-        worth = sorted((*worth, ranking.worth(found)))[-2:]
+        worth = sorted((*worth, found.worth))[-2:]
         if len(worth) == 2 and worth[1] - worth[0] <= AGREED:
             return
 
@@ -112,27 +143,27 @@ class _Fits:
     def __init__(self, request: Request, watch: Watch, pool: Pool) -> None:
         self._request, self._watch, self._pool = request, watch, pool
 
-    def first_look(self, task: GuidedTask) -> Candidate:
+    def first_look(self, task: GuidedTask) -> Previewed:
         """A short fit in the pose of a task, of any panel sizes and for the target alone."""
         quick = replace(self._request, second=None, least_feature_mm=0.0, room_mm=0.0, least_panel=0.0)
-        found = self.done(quick, replace(task, way=Way.COOLED, phases=TRIAL))
-        if found.score.iou_exact < LOST_BELOW:
-            led = self.done(quick, replace(task, way=Way.GUIDED, phases=LED))
-            found = max(found, led, key=lambda one: one.score.iou_exact)
+        found = self.done(quick, PreviewTask(replace(task, way=Way.COOLED), TRIAL))
+        if found.match < LOST_BELOW:
+            led = self.done(quick, PreviewTask(replace(task, way=Way.GUIDED), LED))
+            found = max(found, led, key=lambda one: one.match)
         return found
 
-    def done(self, request: Request, task: GuidedTask) -> Candidate:
-        """The design of one fit."""
+    def done(self, request: Request, task: PreviewTask) -> Previewed:
+        """What comes of one fit."""
         usable = self._pool.usable
         ready = self._pool if usable and self._pool.ready else None
         if usable and ready is None:
             self._pool.start(1)  # for the next one
-        found: Candidate | None = None
+        found: Previewed | None = None
         with closing(answers(ready, request, [task], self._watch)) as reports:
             for report in reports:
                 self._watch.check("run.no_result", 0, 1)
-                if report is not None:
-                    found = report[1].candidate
+                if report is not None and isinstance(report[1], PreviewResult):
+                    found = report[1].previewed
         self._watch.check("run.no_result", 0, 1)
         if found is None:
             raise Cancelled("run.no_result")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.steps import Cancel, never
 from kirigami_studio.lattice.deployment import deploy
@@ -20,18 +19,13 @@ from kirigami_studio.studio.designing import request_for
 class Preview:
     """A quick fit to a target: no design of a run, and not checked as cut."""
 
-    candidate: Candidate
     design: PosedDesign  #: over the target, at the angle that it is fitted for
-
-    @property
-    def match(self) -> float:
-        """Exact IoU with the target, its holes filled."""
-        return self.candidate.score.iou_exact
+    match: float  #: exact IoU with the target, its holes filled
 
     @property
     def grid(self) -> tuple[int, int]:
         """Rows and columns of voids."""
-        return self.candidate.sheet.grid
+        return self.design.deployment.sheet.grid
 
 
 def preview_for(target: Outline, wanted: DesignSettings, cut: FabricationSettings) -> Request:
@@ -59,9 +53,8 @@ def previewing(request: Request, cancel: Cancel) -> Iterator[Preview]:
     """
     from kirigami_studio.pipeline.preview import preview
 
-    for candidate in preview(request, cancel):
-        motion = deploy(candidate.final_sheet)
-        yield Preview(candidate, PosedDesign(motion, candidate.final_pose, candidate.final_phi))
+    for found in preview(request, cancel):
+        yield Preview(PosedDesign(deploy(found.fit.sheet), found.fit.pose, request.phi), found.match)
 
 
 def preview_design(request: Request, cancel: Cancel = never, *, refined: bool = False) -> Preview:

@@ -84,7 +84,7 @@ def test_that_each_change_of_the_target_shows_a_preview_of_it_and_changes_nothin
         assert board.target.view.grab().toImage() != shown
     board.commands["undo"].trigger()
     until(lambda: seen[-1] is not None)
-    assert seen[-1] is not None and seen[-1].candidate.score.iou_exact > 0.9
+    assert seen[-1] is not None and seen[-1].match > 0.9
 
 
 def test_that_a_newer_target_stops_the_work_for_the_older_one(

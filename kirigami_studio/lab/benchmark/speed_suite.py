@@ -243,8 +243,8 @@ def _timed_preview(target: Outline, pool: Pool) -> tuple[str, tuple[float, ...]]
     seconds = time.perf_counter() - began, time.process_time() - processor
     last = [first, *found][-1]
     spent = time.process_time() - processor
-    rows, columns = first.sheet.grid
-    return f"{rows}x{columns}", (*seconds, first.score.iou_exact, spent, last.score.iou_exact)
+    rows, columns = first.fit.sheet.grid
+    return f"{rows}x{columns}", (*seconds, first.match, spent, last.match)
 
 
 def _step_seconds(candidate: Candidate, target: Outline) -> float:

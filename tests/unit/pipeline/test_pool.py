@@ -106,7 +106,7 @@ def test_that_a_worker_previews_the_design_that_one_process_does(pool: Pool, req
     while not pool.ready:
         time.sleep(0.01)
     first, here = (preview(request_for_heart, pool=one) for one in (pool, Pool(0)))
-    assert next(first).sheet == next(here).sheet
+    assert next(first).fit.sheet == next(here).fit.sheet
     first.close()
 
 

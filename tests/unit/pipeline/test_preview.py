@@ -18,7 +18,6 @@ from kirigami_studio.pipeline import pool as pools
 from kirigami_studio.pipeline.auto_grid import FINEST, predicted_for
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.preview import LOST_BELOW, REFINED, preview, preview_request
-from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
@@ -34,21 +33,20 @@ def small() -> Request:
 
 def test_that_each_design_of_a_preview_is_worth_more_than_the_one_before_and_has_the_grid_of_the_run() -> None:
     request = Request(load("circle"), None)
-    ranking = Ranking.of(request)
     found = list(preview(request, pool=ALONE))
-    assert 1 < len(found) <= 1 + REFINED and found[0].score.iou_exact > 0.95
-    assert all(ranking.key(after) < ranking.key(before) for before, after in pairwise(found))
-    assert {one.sheet.grid for one in found} == {predicted_for(request).grid}
+    assert 1 < len(found) <= 1 + REFINED and found[0].match > 0.95
+    assert all(after.worth > before.worth for before, after in pairwise(found))
+    assert {one.fit.sheet.grid for one in found} == {predicted_for(request).grid}
 
 
 def test_that_a_preview_starts_one_worker_and_does_its_work_here_until_that_is_ready(small: Request) -> None:
     workers = Pool(2, [sys.executable, "-c", "import sys; sys.stdin.read()"])
     try:
-        found = next(preview(small, pool=workers)).sheet
+        found = next(preview(small, pool=workers)).fit.sheet
         assert len(workers.workers) == 1
     finally:
         workers.close()
-    assert found == next(preview(small, pool=ALONE)).sheet
+    assert found == next(preview(small, pool=ALONE)).fit.sheet
 
 
 def test_that_a_preview_stops_within_one_step_of_a_fit(small: Request) -> None:
@@ -89,7 +87,7 @@ def test_that_a_fine_grid_is_previewed_on_a_coarser_one_of_its_parities() -> Non
 
 def test_that_a_target_that_short_fits_lose_is_tried_with_a_transport_map() -> None:
     first = next(preview(Request(load("bone"), (9, 15)), pool=ALONE))
-    assert first.score.iou_exact > LOST_BELOW  # 0.33 by the short fit alone
+    assert first.match > LOST_BELOW  # 0.33 by the short fit alone
 
 
 @pytest.mark.parametrize("construction", [Construction.ONE_SHEET, Construction.PINNED])
