@@ -96,9 +96,9 @@ def paint_proposal(painter: QPainter, rings: ShapeRings, palette: Palette) -> No
 
 def paint_design_preview(painter: QPainter, panels: FloatArray, palette: Palette) -> None:
     """Draw the panels (K, 4, 2), pixels, of a design that is only a preview: thin lines, nothing filled."""
-    pen = round_pen(palette.panel_line, 0.8)
-    line = QColor(palette.panel_line)
+    line = QColor(palette.accent)
     line.setAlpha(170)
+    pen = round_pen(palette.accent, 0.8)
     pen.setColor(line)
     painter.setPen(pen)
     painter.setBrush(Qt.BrushStyle.NoBrush)
