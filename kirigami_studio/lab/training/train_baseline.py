@@ -187,7 +187,9 @@ class BaselineRun:
         corpus = designs_of(settings.family, designs, pixels.rows, pixels.columns, self.seed, settings.chunk, device)
         self.disturbance = TargetNoise(settings.vertex_noise, settings.turn_noise)
         self.still = not (settings.vertex_noise or settings.turn_noise)
-        self.designs = ChunkBatches(Masked(corpus, pixels) if self.still else corpus, ranks.share(settings.batch), PASSES)
+        self.designs = ChunkBatches(
+            Masked(corpus, pixels) if self.still else corpus, ranks.share(settings.batch), PASSES
+        )
         self._descended: Callable[..., tuple[Tensor, ...]] = self._descend
         if recorded:
             self._descended = Recorded(self._descend, self.generator)
