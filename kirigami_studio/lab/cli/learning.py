@@ -241,11 +241,12 @@ def _train_baseline(
         learning_rate=arguments.learning_rate,
         first_moment=first_moment,
         average_decay=arguments.average_decay,
-        **({"vertex_noise": 0.0, "turn_noise": 0.0} if arguments.still else {}),
         family=_family(arguments, designs),
         designs=digest_of_designs(designs),
         seed=arguments.seed,
     )
+    if arguments.still:
+        settings = replace(settings, vertex_noise=0.0, turn_noise=0.0)
     folder = Path(arguments.out)
     records = train_baseline(
         settings,
