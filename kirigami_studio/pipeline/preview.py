@@ -146,7 +146,7 @@ class _Fits:
     def first_look(self, task: GuidedTask) -> Previewed:
         """A short fit in the pose of a task, of any panel sizes and for the target alone."""
         quick = replace(self._request, second=None, least_feature_mm=0.0, room_mm=0.0, least_panel=0.0)
-        found = self.done(quick, PreviewTask(replace(task, way=Way.COOLED), TRIAL))
+        found = self.done(quick, PreviewTask(replace(task, way=Way.COOLED), sparingly(*TRIAL)))
         if found.match < LOST_BELOW:
             led = self.done(quick, PreviewTask(replace(task, way=Way.GUIDED), LED))
             found = max(found, led, key=lambda one: one.match)
