@@ -162,7 +162,7 @@ def test_that_cells_of_a_disk_on_pins_are_long_where_fits_of_a_long_target_are_l
         asked.extend(task.grid for task in tasks)
         return [0.84 if task.grid == (5, 9) else worth for task in tasks]
 
-    disk = {"start": start_shape("circle"), "width_mm": 240.0, "least_gap_mm": 9.0, "upright": True}
+    disk = {"start": start_shape("circle"), "width_mm": 240.0, "least_gap_mm": 9.0, "two_layers": True}
     request = Request(load(name), None, k=4, polish=0, **disk)
     predicted = predicted_for(request).grid
     assert predicted[0] == predicted[1]
