@@ -137,10 +137,10 @@ def pinned(
         most = math.inf if covers else MOST_LOST * (spare - (1.0 - FILLED) * gone)
         trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)
         trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
-        extend_to(shaping, opened, closed, 0.0)
+        held_back = extend_to(shaping, opened, closed, 0.0)
         extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
         if options.weight > 0.5:
-            extend_to(shaping, opened, closed, MOST_BEYOND * (spare - closed.missing(shaping)))
+            extend_to(shaping, opened, closed, MOST_BEYOND * (spare - closed.missing(shaping)), held_back)
         round_off(shaping, (opened, closed))
         if shown.interiors:  # necks that lead through holes may be joined by what was added
             trim_to(shaping, opened, closed, 0.0)

@@ -398,9 +398,10 @@ class Shaping:
         drifts = motion.seen_drift(others.owner[moving], here[: len(moving)], corners)
         turn = float(motion.sense[index]) * motion.opening
         hulls = swept_hulls(corners, drifts, turn, BODY_TOLERANCE, boxes)
-        zone = shapely.buffer(together(parts), grown, quad_segs=ZONE_CHORDS)
-        shapely.prepare(zone)
-        swept: BaseGeometry = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
+        whole = together(parts)
+        shapely.prepare(whole)
+        near = shapely.union_all(hulls[shapely.dwithin(whole, hulls, grown)])
+        swept: BaseGeometry = near.buffer(grown / math.cos(0.25 * math.pi / ZONE_CHORDS), quad_segs=ZONE_CHORDS)
         return swept
 
     def held_together(self, index: int, shape: BaseGeometry) -> Polygon | None:
@@ -575,7 +576,8 @@ def united(*shapes: BaseGeometry) -> BaseGeometry:
 
 def together(parts: GeometryArray) -> BaseGeometry:
     """Polygons, of which no two overlap, as one shape."""
-    return shapely.MultiPolygon(shapely.get_parts(parts).tolist())
+    found: BaseGeometry = shapely.multipolygons(shapely.get_parts(parts))
+    return found
 
 
 def _worthwhile(shape: BaseGeometry) -> GeometryArray:
