@@ -576,7 +576,8 @@ def united(*shapes: BaseGeometry) -> BaseGeometry:
 
 def together(parts: GeometryArray) -> BaseGeometry:
     """Polygons, of which no two overlap, as one shape."""
-    found: BaseGeometry = shapely.multipolygons(shapely.get_parts(parts))
+    found = shapely.multipolygons(shapely.get_parts(parts))
+    assert isinstance(found, BaseGeometry)  # one array makes one geometry
     return found
 
 
