@@ -198,10 +198,10 @@ def _shaped(notched: Shaping, opened: EndState, closed: EndState, spare: float, 
     most = MOST_LOST * (spare - (1.0 - FILLED) * gone) if math.isfinite(gone) else math.inf
     trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)
     trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
-    extend_to(shaping, opened, closed, 0.0)
+    held_back = extend_to(shaping, opened, closed, 0.0)
     extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
     if options.weight > 0.5:
-        extend_to(shaping, opened, closed, MOST_BEYOND * (spare - closed.missing(shaping)))
+        extend_to(shaping, opened, closed, MOST_BEYOND * (spare - closed.missing(shaping)), held_back)
     round_off(shaping, (opened, closed))
     if opened.outline.interiors:  # necks that lead through holes may be joined by what was added
         trim_to(shaping, opened, closed, 0.0)

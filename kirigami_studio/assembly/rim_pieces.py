@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -354,7 +354,9 @@ def _joined(ways: list[list[tuple[int, float]]], ends: Sequence[int]) -> list[li
     return found
 
 
-def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) -> float:
+def extend_to(
+    shaping: Shaping, state: EndState, other: EndState, spare: float, among: Collection[int] | None = None
+) -> set[int]:
     """Extend pieces to gaps in a state's outline, where their layer is free at every angle.
 
     First each takes its share of the rim, whole even where another layer lies on it, and gaps beside it; then whatever
@@ -368,12 +370,16 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
         The other end.
     spare : float, mm2
         How much may stick out of the other end's outline.
+    among : collection of int, optional
+        Pieces that are extended; all unless given.
 
     Returns
     -------
-    spent : float, mm2
+    held_back : set of int
+        Pieces that the other end's outline kept from more, or that now reach farther: others gain nothing by a second
+        time, for what is free of them becomes less.
     """
-    reach, spent = shaping.options.reach_mm, 0.0
+    reach, spent, held_back = shaping.options.reach_mm, 0.0, set[int]()
     placed = shaping.placed(state.turn)
     missing = less(less(state.outline, united(*placed)), state.voids)
     if shaping.options.in_one_plane:  # the clearance all round is none
@@ -387,6 +393,8 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
         piece, gap = shapely.STRtree(gaps).query(shaping.placed(state.turn), predicate="dwithin", distance=TOUCHED)
         worth = np.bincount(piece, shapely.area(gaps)[gap], len(placed))
         for index in np.argsort(-worth)[: np.count_nonzero(worth)].tolist():
+            if among is not None and index not in among:
+                continue
             near = gap[piece == index]
             beside = near[rims[near]]
             at_rim = (
@@ -403,11 +411,16 @@ def extend_to(shaping: Shaping, state: EndState, other: EndState, spare: float) 
                 near, needed, want = beside, at_rim, at_rim
             if needed.area < LEAST_PART:
                 continue
-            added, beyond = _extended(shaping, index, state, other, want, needed, spare - spent)
+            added, beyond, held = _extended(shaping, index, state, other, want, needed, spare - spent)
+            beyond_reach = shapely.area(gaps[beside]).sum() - at_rim.area > LEAST_PART
+            if held or (added is not None and not by_shares and beyond_reach):
+                held_back.add(index)
             if added is not None:
                 spent += beyond
-                gaps[near] = [less(one, added) for one in gaps[near]]
-    return spent
+                shapely.prepare(added)
+                filled = near[shapely.intersects(added, gaps[near])]
+                gaps[filled] = [less(one, added) for one in gaps[filled]]
+    return held_back
 
 
 def _extended(
@@ -418,7 +431,7 @@ def _extended(
     want: BaseGeometry,
     needed: BaseGeometry,
     spare: float,
-) -> tuple[BaseGeometry | None, float]:
+) -> tuple[BaseGeometry | None, float, bool]:
     """Add to a piece as much of an area as is free.
 
     Returns
@@ -427,6 +440,8 @@ def _extended(
         In the state; None where that is not worth it.
     beyond : float, mm2
         How much of it sticks out of the other state's outline.
+    held_back : bool
+        Whether that outline takes any of what is free.
     """
     motion, body, here = shaping.motion, shaping.bodies[index], np.array([index])
     mine, missed = motion.brought_back(np.array([want, needed], dtype=object), here[[0, 0]], state.turn)
@@ -435,7 +450,8 @@ def _extended(
     new = less(mine, body).buffer(OVERLAP, join_style="mitre")
     free = shaping.free(index, new)
     inside = free if within else shared(free, limit)
-    may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and free.area - inside.area > LEAST_PART
+    held_back = free.area - inside.area > LEAST_PART
+    may_stick_out = spare > 0.0 and shaping.options.weight > 0.5 and held_back
     for room in (free, inside) if may_stick_out else (inside,):
         more = shaping.with_more(index, room) if shared(room, missed).area > LEAST_PART else None
         if more is None:
@@ -446,8 +462,8 @@ def _extended(
             added is room or (best.area > body.area + LEAST_PART and shared(added, missed).area > LEAST_PART)
         ):
             shaping.add(index, best, added)
-            return motion.placed(np.array([added], dtype=object), here, state.turn)[0], beyond
-    return None, 0.0
+            return motion.placed(np.array([added], dtype=object), here, state.turn)[0], beyond, held_back
+    return None, 0.0, held_back
 
 
 def round_off(shaping: Shaping, states: tuple[EndState, EndState]) -> None:

@@ -405,9 +405,10 @@ class Shaping:
         drifts = motion.seen_drift(others.owner[moving], here[: len(moving)], corners)
         turn = float(motion.sense[index]) * motion.opening
         hulls = swept_hulls(corners, drifts, turn, BODY_TOLERANCE, boxes)
-        zone = shapely.buffer(together(parts), grown, quad_segs=ZONE_CHORDS)
-        shapely.prepare(zone)
-        swept: BaseGeometry = shapely.union_all(hulls[shapely.intersects(zone, hulls)]).buffer(grown)
+        whole = together(parts)
+        shapely.prepare(whole)
+        near = shapely.union_all(hulls[shapely.dwithin(whole, hulls, grown)])
+        swept: BaseGeometry = near.buffer(grown / math.cos(0.25 * math.pi / ZONE_CHORDS), quad_segs=ZONE_CHORDS)
         return swept
 
     def held_together(self, index: int, shape: BaseGeometry) -> Polygon | None:
@@ -582,7 +583,9 @@ def united(*shapes: BaseGeometry) -> BaseGeometry:
 
 def together(parts: GeometryArray) -> BaseGeometry:
     """Polygons, of which no two overlap, as one shape."""
-    return shapely.MultiPolygon(shapely.get_parts(parts).tolist())
+    found = shapely.multipolygons(shapely.get_parts(parts))
+    assert isinstance(found, BaseGeometry)  # one array makes one geometry
+    return found
 
 
 def _worthwhile(shape: BaseGeometry) -> GeometryArray:

@@ -55,11 +55,16 @@ def largest_shift(found: Sequence[Stroke], meant: Sequence[Stroke]) -> float:
 
 def bent_otherwise(found: Sequence[Stroke], meant: Sequence[Stroke], tolerance: float) -> int:
     """Number of strokes whose arcs differ by more than ``tolerance`` in a bulge."""
-    return sum(
-        not np.allclose(_bulges(one), _bulges(other), rtol=0.0, atol=tolerance)
+    bent = [
+        (_bulges(one), _bulges(other))
         for one, other in zip(found, meant, strict=True)
         if one.bulges is not None or other.bulges is not None
-    )
+    ]
+    if not bent:
+        return 0
+    ones, others = (np.concatenate(sides) for sides in zip(*bent, strict=True))
+    owner = np.repeat(np.arange(len(bent)), [len(one) for one, _ in bent])
+    return len(np.unique(owner[~(np.abs(ones - others) <= tolerance)]))
 
 
 def _bulges(stroke: Stroke) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

@@ -13,7 +13,8 @@ import pytest
 import shapely
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from kirigami_studio.assembly.checks import PinnedReport, check_pinned, neck_mm, pins_apart, wall_mm
+from kirigami_studio.assembly import rim_pieces
+from kirigami_studio.assembly.checks import PinnedReport, check_pinned, iou, neck_mm, pins_apart, wall_mm
 from kirigami_studio.assembly.motion import LayerMotion, freedom
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Piece, RoundHole
@@ -344,6 +345,35 @@ def test_that_pieces_are_made_on_one_thread_of_blas(
     with threadpool_limits(2, "blas"):
         pinned(*notched, 130.0, BRADS)
     assert threads and set(threads) == {1}
+
+
+def test_that_only_pieces_that_could_gain_are_extended_a_second_time(
+    notched: tuple[PosedDesign, Outline], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 121 pieces of a gear in plywood 34 are tried again, with the outlines that trying all of them gives."""
+    passes: list[set[int]] = []
+    extended, extend = rim_pieces._extended, rim_pieces.extend_to
+
+    def counting(shaping: Shaping, index: int, *given: Any) -> Any:
+        passes[-1].add(index)
+        return extended(shaping, index, *given)
+
+    def passing(*given: Any) -> set[int]:
+        passes.append(set())
+        return extend(*given)
+
+    def all_again(*given: Any) -> set[int]:
+        return extend(*given[:4])
+
+    monkeypatch.setattr(rim_pieces, "_extended", counting)
+    monkeypatch.setattr("kirigami_studio.assembly.pinned.extend_to", passing)
+    found = check_pinned(pinned(*notched, 130.0, BRADS), 2).figures
+    first, _, again = map(len, passes)
+    monkeypatch.setattr("kirigami_studio.assembly.pinned.extend_to", all_again)
+    every = check_pinned(pinned(*notched, 130.0, BRADS), 2).figures
+    assert 0 < again < first
+    assert found.match == pytest.approx(every.match, abs=2e-4)
+    assert found.flat_match == pytest.approx(every.flat_match, abs=2e-4)
 
 
 def test_that_pins_without_a_wall_go_before_needless_ones() -> None:
