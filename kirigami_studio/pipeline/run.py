@@ -99,7 +99,7 @@ SECOND_ROUND_SHOWN = 4
 
 #: Where the first design matches by less than this after the first round, the shape is hard: the whole better half goes
 #: on, by this multiple of the steps that are left, and designs are finished by as many steps as were asked for.
-HARD_BELOW, HARD_STEPS = 0.988, 2.0
+HARD_BELOW, HARD_STEPS = 0.989, 2.0
 
 #: Fits from the uniform sheet end once the best two agree in worth within this.  Until then poses whose fits agree with
 #: the best are tried another way, and others are left behind.

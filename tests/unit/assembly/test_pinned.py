@@ -14,7 +14,7 @@ import shapely
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from kirigami_studio.assembly import rim_pieces
-from kirigami_studio.assembly.checks import PinnedReport, check_pinned, iou, neck_mm, pins_apart, wall_mm
+from kirigami_studio.assembly.checks import PinnedReport, check_pinned, neck_mm, pins_apart, wall_mm
 from kirigami_studio.assembly.motion import LayerMotion, freedom
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Piece, RoundHole
