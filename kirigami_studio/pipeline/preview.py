@@ -11,8 +11,11 @@ from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, replace
 
+import shapely
+
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.steps import never
+from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE
 from kirigami_studio.pipeline.auto_grid import FINEST, TRIAL, known_for
 from kirigami_studio.pipeline.pool import Pool, shared_pool
@@ -30,6 +33,8 @@ LED = sparingly(FitPhase(3, 0.1, 1e-2, 0.1), FitPhase(3, 0.04, 3e-3, 0.02), FitP
 LOST_BELOW = 0.75
 #: Whole fits that follow, at most.
 REFINED = 3
+#: Targets of more points are simplified, by at most this (unit-area lengths): 20 000 points take 4 s.
+MANY_POINTS, DETAIL = 1000, 0.002
 #: Designs of the run whose fits from the uniform sheet these are.
 K, GUIDED = 32, 8
 
@@ -64,6 +69,15 @@ def preview_request(request: Request) -> Request:
         near=None,
         nearness=0.0,
     )
+
+
+def lightened(target: Outline) -> Outline:
+    """A target of so many points that its figures would take seconds, without details that no sheet shows."""
+    if len(target.points) <= MANY_POINTS:
+        return target
+    shape = target.polygon.simplify(DETAIL)
+    rings = [shapely.get_coordinates(ring) for ring in (shape.exterior, *shape.interiors)]
+    return Outline.from_points(rings[0], target.name, holes=rings[1:])
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +135,7 @@ def preview(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
         There is no sheet for the request, such as a start whose panels fold over.
     """
     request = preview_request(request)
+    request = replace(request, target=lightened(request.target))
     request = request.resolved(known_for(request).grid)
     fits = _Fits(request, Watch(cancel, 0.0), pool or shared_pool())
     tasks = fits_from_uniform(request)

@@ -7,6 +7,7 @@ import threading
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from kirigami_studio.fabricate.material import Construction
@@ -17,7 +18,15 @@ from kirigami_studio.outlines.starts import RECTANGLE, start_shape
 from kirigami_studio.pipeline import pool as pools
 from kirigami_studio.pipeline.auto_grid import FINEST, predicted_for
 from kirigami_studio.pipeline.pool import Pool
-from kirigami_studio.pipeline.preview import LOST_BELOW, REFINED, preview, preview_request
+from kirigami_studio.pipeline.preview import (
+    DETAIL,
+    LOST_BELOW,
+    MANY_POINTS,
+    REFINED,
+    lightened,
+    preview,
+    preview_request,
+)
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
@@ -98,3 +107,13 @@ def test_that_a_target_with_holes_is_previewed_filled(construction: Construction
     request = preview_for(target, DesignSettings((5, 5), auto_grid=False), cut)
     found = preview_design(request)
     assert found.match > 0.95 and request.pinned is (construction is Construction.PINNED)
+
+
+def test_that_a_target_of_very_many_points_is_previewed_without_details_that_no_sheet_shows() -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 4000, endpoint=False)
+    radius = 1.0 + 0.2 * np.cos(5.0 * angle) + 0.001 * np.cos(400.0 * angle)
+    heavy = Outline.from_points(radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]), "heavy")
+    light = lightened(heavy)
+    assert len(heavy.points) > MANY_POINTS > len(light.points)
+    assert light.polygon.symmetric_difference(heavy.polygon).area < 2.0 * DETAIL
+    assert lightened(load("heart")) is lightened(load("heart")) == load("heart")
