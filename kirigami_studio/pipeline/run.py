@@ -279,19 +279,19 @@ def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
 
 
 def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
-    """Sample all designs that are not fitted from the uniform sheet, the first ones of each kind, see :func:`drawn`."""
+    """Sample all designs that are not fitted from the uniform sheet, see :func:`drawn`."""
     return tuple(sheet for kind in drawn(request, model) for sheet in kind.sheets[: kind.kept])
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class DrawnKind:
     """Samples that keep one symmetry, or none."""
 
     sheets: tuple[Sheet, ...]
     kept: int  #: How many of them a run has a place for; others are to choose from
 
 
-def drawn(request: Request, model: Model | None = None, least: int = 0) -> list[Drawn]:
+def drawn(request: Request, model: Model | None = None, least: int = 0) -> list[DrawnKind]:
     """Sample the request's sheets; torch is imported here, on the first run, and not when the program starts.
 
     There are ``k`` of them, or ``least`` if that is more: as many as are not fitted from the uniform sheet have a
@@ -308,7 +308,7 @@ def drawn(request: Request, model: Model | None = None, least: int = 0) -> list[
     if request.near is not None:
         near = Near(request.near.field, rotation_of_target(request.near, request.silhouette, phi), request.nearness)
         fields = sample_fields(model, request.silhouette, grid, count, seed, steps, phi, near=near)
-        return [Drawn(tuple(on_sheet(request, field) for field in fields), count)]
+        return [DrawnKind(tuple(on_sheet(request, field) for field in fields), count)]
     # The model knows no other start than the rectangle, and where mouths of that are.
     draw = (
         sample_sheets
@@ -326,14 +326,17 @@ def drawn(request: Request, model: Model | None = None, least: int = 0) -> list[
         target = request.silhouette if pose is None else fit_target(request, pose.symmetry)
         symmetry, upward = (None, None) if pose is None else (pose.symmetry, pose.angle)
         found = draw(model, target, grid, most, seed, steps, phi, symmetry=symmetry, upward=upward)
-        made.append(Drawn(tuple(on_sheet(request, one) for one in found), share))
+        made.append(DrawnKind(tuple(on_sheet(request, one) for one in found), share))
     return made
 
 
 def best_of_each(
-    kinds: Sequence[Drawn], found: Sequence[Candidate], ranking: Ranking
+    kinds: Sequence[DrawnKind], found: Sequence[Candidate], ranking: Ranking
 ) -> tuple[list[Candidate], list[Candidate]]:
-    """Of samples scored in the order in which they were drawn: the best of each kind, in that order, and the others."""
+    """Divide scored samples into those that are kept and those to spare.
+
+    They come in the order in which they were drawn.  The best of each kind are kept, in that order.
+    """
     best: list[Candidate] = []
     spare: list[Candidate] = []
     first = 0
@@ -439,7 +442,7 @@ class _Work:
         self.cut_short = False
 
     def sample(self) -> Iterator[Event]:
-        """Draw samples and score them, the first batch whatever the budget; the best of each kind are kept."""
+        """Draw samples, score them, the first batch whatever the budget, and keep the best."""
         kinds = drawn(self.request, least=LEAST_DRAWN if self.request.fitted_starts else 0)
         sheets = [sheet for kind in kinds for sheet in kind.sheets]
         found: list[Candidate] = []
@@ -457,7 +460,7 @@ class _Work:
         yield from self._kept(chosen, range(len(chosen)))
 
     def fill(self) -> Iterator[Event]:
-        """Keep samples that are to spare in the places of fits from the uniform sheet that were not needed."""
+        """Keep spare samples in the places of fits that were not needed."""
         known = {one.index for one in self.found}
         if not self.cut_short:
             yield from self._kept(self.spare, [number for number in range(self.request.k) if number not in known])
