@@ -318,7 +318,9 @@ def drawn(request: Request, model: Model | None = None, least: int = 0) -> list[
     every = max(request.k, least)
     shares, of_all = symmetric_shares(request, count), symmetric_shares(request, every)
     kept = [share for _, share in shares] + [0] * (len(of_all) - len(shares))
-    kinds = [(most, share, pose) for (pose, most), share in zip(of_all, kept, strict=True)]
+    kinds: list[tuple[int, int, SymmetricPose | None]] = [
+        (most, share, pose) for (pose, most), share in zip(of_all, kept, strict=True)
+    ]
     if sum(kept) < count:
         kinds.append((every - sum(most for _, most in of_all), count - sum(kept), None))
     made = []
