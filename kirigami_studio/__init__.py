@@ -16,7 +16,7 @@ __version__ = "0.2.0"
 _MODULES = {
     "api.target": ("Target", "load_target", "target_names"),
     "api.design": ("Sheet", "decode", "Design", "score", "siou", "Cuts", "Pieces", "Exported", "share"),
-    "api.designs": ("Designs", "design", "load_project", "machine_names", "material_names"),
+    "api.designs": ("Designs", "design", "load_project", "machine_names", "material_names", "preview"),
     "api.parts": ("ExportedParts", "Parts", "design_parts", "load_parts"),
     "api.simulation": ("Simulation",),
     "api.checked_file": ("CheckedFile", "check"),

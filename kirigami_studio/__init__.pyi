@@ -24,6 +24,7 @@ if not CHECKED_FROM_INSIDE:
     from kirigami_studio.api.designs import load_project as load_project
     from kirigami_studio.api.designs import machine_names as machine_names
     from kirigami_studio.api.designs import material_names as material_names
+    from kirigami_studio.api.designs import preview as preview
     from kirigami_studio.api.parts import ExportedParts as ExportedParts
     from kirigami_studio.api.parts import Parts as Parts
     from kirigami_studio.api.parts import design_parts as design_parts

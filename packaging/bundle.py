@@ -315,7 +315,7 @@ def needed_libraries(folder: Path) -> set[str]:
 
 
 def pack(folder: Path, out: Path) -> Path:
-    """Pack a folder as the archive of a release, as small as it gets in reasonable time."""
+    """Pack a folder as the archive of a release; xz -9 takes twice as long to save 2 %."""
     out.mkdir(parents=True, exist_ok=True)
     archive = out / file_names(version())["bundle"]
     archive.unlink(missing_ok=True)
@@ -324,7 +324,7 @@ def pack(folder: Path, out: Path) -> Path:
         return archive
     ordered = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "-C", str(folder.parent), folder.name]
     subprocess.run(
-        ["tar", "-c", "-I", "xz -9 -T2", "-f", str(archive), *ordered], check=True, env=os.environ | {"LC_ALL": "C"}
+        ["tar", "-c", "-I", "xz -T2", "-f", str(archive), *ordered], check=True, env=os.environ | {"LC_ALL": "C"}
     )
     return archive
 
@@ -397,9 +397,14 @@ def main() -> int:
     """Freeze, cut, pack."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "dist", help="folder of the archive (default: dist)")
-    parser.add_argument("--no-archive", action="store_true", help="only make the folder")
+    steps = parser.add_mutually_exclusive_group()
+    steps.add_argument("--no-archive", action="store_true", help="only make the folder")
+    steps.add_argument("--archive-only", action="store_true", help="only pack the folder that was made")
     arguments = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
+    if arguments.archive_only:
+        print(pack(BUILD / "dist" / "kirigami-studio", arguments.out))
+        return 0
     folder = freeze()
     if sys.platform.startswith("linux"):
         strip(folder)

@@ -113,13 +113,15 @@ def make(out: Path) -> None:
     install(python, str(out / names["wheel"]))
     try_out(python)
     install(python, "pyinstaller", "argparse-manpage")
-    subprocess.run([str(python), str(PACKAGING / "bundle.py"), "--out", str(out)], check=True)
+    bundle = [str(python), str(PACKAGING / "bundle.py"), "--out", str(out)]
+    subprocess.run([*bundle, "--no-archive"], check=True)
     folder = ROOT / "build" / "bundle" / "dist"
     if sys.platform == "darwin":
         try_out(python, "--program", f"'{folder / 'Kirigami Studio.app/Contents/MacOS/kirigami-studio'}'")
         subprocess.run(["sh", str(PACKAGING / "macos" / "dmg.sh")], check=True)
     elif sys.platform == "win32":
         try_out(python, "--program", f"'{folder / 'kirigami-studio' / 'kirigami-studio.exe'}'")
+        subprocess.run([*bundle, "--archive-only"], check=True)
         script = str(PACKAGING / "windows" / "kirigami-studio.iss")
         signed = (
             ["/DSigned", f"/Ssigntool={os.environ['KIRIGAMI_SIGNTOOL']}"] if "KIRIGAMI_SIGNTOOL" in os.environ else []
@@ -127,6 +129,7 @@ def make(out: Path) -> None:
         subprocess.run(["iscc", f"/DVersion={version()}", *signed, script], check=True)
     else:
         try_out(python, "--program", f"'{folder / 'kirigami-studio' / 'kirigami-studio'}'")
+        subprocess.run([*bundle, "--archive-only"], check=True)
         subprocess.run([str(python), str(PACKAGING / "linux" / "deb.py"), "--out", str(out)], check=True)
     write_sums(out, [*names.values(), write_notes(out).name])
 

@@ -24,7 +24,7 @@ from kirigami_studio.api.choices import (
     number,
     values_for,
 )
-from kirigami_studio.api.design import Design, save_project
+from kirigami_studio.api.design import Design, Sheet, save_project
 from kirigami_studio.api.pictures import Thumbnail, contact_sheet
 from kirigami_studio.api.target import Target, TargetLike, load_target
 from kirigami_studio.api.values import optional_package, read_only
@@ -38,7 +38,7 @@ from kirigami_studio.pipeline.events import Progress, Result
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.design import DesignChoices, chosen_settings
-from kirigami_studio.settings.fabrication import StyleName, new_settings
+from kirigami_studio.settings.fabrication import FabricationSettings, StyleName, new_settings
 from kirigami_studio.studio.designing import (
     Tell,
     completed,
@@ -49,6 +49,7 @@ from kirigami_studio.studio.designing import (
     run_design,
     why_covered,
 )
+from kirigami_studio.studio.previewing import preview_design, preview_for
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -322,6 +323,38 @@ def design(
     finally:
         line.end()
     return Designs(document_of(result, fabrication), result)
+
+
+def preview(
+    target: TargetLike,
+    *,
+    grid: str | tuple[int, int] = "auto",
+    start: TargetLike = "rectangle",
+    phi: float = 0.0,
+    refined: bool = False,
+) -> Design:
+    """Fit one sheet to a target in a fraction of a second, as the window does while a target is drawn.
+
+    It is no design of a run: nothing is sampled, compared or checked as cut, and holes stay closed.
+
+    Parameters
+    ----------
+    target, grid, start
+        As in :func:`design`; a grid of more than 16 voids each way gives way to a coarser one.
+    phi : float, radians
+        At which the sheet is meant to show the target.
+    refined : bool
+        Whether up to three longer fits follow, which take a few seconds.
+
+    Raises
+    ------
+    TargetError, UsageError, GridError, AngleError, SheetError
+        With what does not fit.
+    """
+    outline = load_target(target).outline
+    wanted = chosen_settings(_grid(grid), {"phi": number("phi", phi)}, start=_start(start, {}))
+    found = preview_design(preview_for(outline, wanted, FabricationSettings()), refined=refined)
+    return Sheet(found.design.deployment).for_target(outline, phi=phi)
 
 
 design.__signature__ = explicit_signature(design, keywords_of(*SEARCH))  # type: ignore[attr-defined]

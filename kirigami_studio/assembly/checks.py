@@ -16,7 +16,7 @@ from kirigami_studio.assembly.nesting import smallest_rectangle
 from kirigami_studio.assembly.passing import passing
 from kirigami_studio.assembly.pieces import Assembly, Piece
 from kirigami_studio.assembly.pinned import PinnedPlan
-from kirigami_studio.assembly.rim_pieces import silhouette
+from kirigami_studio.assembly.rim_pieces import filled, iou, silhouette
 from kirigami_studio.assembly.shaping import united
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.trimming import MOSTLY_OPEN, SMALL_HOLE, TrimmedHole
@@ -317,16 +317,6 @@ def pins_apart(deployment: Deployment, nodes: Sequence[int], cell_mm: float, phi
     return math.sqrt(max(float(least[nearest]), 0.0)), pair
 
 
-def filled(shape: BaseGeometry, target: Polygon) -> BaseGeometry:
-    """Fill the openings of a shape, but for those at holes of the target."""
-    whole = silhouette(shape)
-    if not target.interiors:
-        return whole
-    rings = np.array([Polygon(ring) for part in shapely.get_parts(shape) for ring in part.interiors], dtype=object)
-    holes = shapely.union_all([Polygon(ring) for ring in target.interiors])
-    return shapely.difference(whole, shapely.union_all(rings[shapely.intersects(rings, holes)]))
-
-
 def shown_holes(plan: PinnedPlan, bodies: Sequence[BaseGeometry], seen: BaseGeometry) -> tuple[TrimmedHole, ...]:
     """How the pieces leave the holes of their target open."""
     assembly = plan.assembly
@@ -370,9 +360,3 @@ def closed_holes(
             x, y = ((np.array(some[0].place) - low) * cell_mm).tolist()
             problems.append(Problem.warning(code, (x, y), count=len(some), total=len(holes), x=x, y=y))
     return problems
-
-
-def iou(one: BaseGeometry, other: BaseGeometry) -> float:
-    """Exact intersection over union."""
-    shared = one.intersection(other).area
-    return float(shared / (one.area + other.area - shared))

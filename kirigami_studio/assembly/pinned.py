@@ -31,6 +31,9 @@ from kirigami_studio.outlines.outline import Outline
 DROPPED, FILLED = 1.67, 0.3
 #: How much of what is left to spare pieces may lose where they are cut, and by how much of the rest they may stick out.
 MOST_LOST, MOST_BEYOND = 0.6, 0.9
+#: Pieces that match the target by less are cut further where the flat outline has more to spare than was thought: so
+#: often at most, while that is this share of what it could spare at first, and gains so much match.
+WELL_SHOWN, MORE_SPENT, LEAST_LEFT, WORTHWHILE = 0.98, 3, 0.15, 0.002
 #: Width of a character of a label, in its heights.
 CHARACTER = 0.7
 
@@ -134,16 +137,7 @@ def pinned(
         closed = EndState.of(deployment, panels, math.pi, cell_mm, flat, options.reach_mm)
         # Of the flat outline of a cover there is no more than its trim leaves.
         covers = design.trim is not None and design.trim.given_up > 0
-        most = math.inf if covers else MOST_LOST * (spare - (1.0 - FILLED) * gone)
-        trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)
-        trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
-        extend_to(shaping, opened, closed, 0.0)
-        extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
-        if options.weight > 0.5:
-            extend_to(shaping, opened, closed, MOST_BEYOND * (spare - closed.missing(shaping)))
-        round_off(shaping, (opened, closed))
-        if shown.interiors:  # necks that lead through holes may be joined by what was added
-            trim_to(shaping, opened, closed, 0.0)
+        shaping = _with_rims(shaping, opened, closed, spare, math.inf if covers else gone)
         if gone and not covers and closed.missing(shaping) > spare:
             return pinned(design, target, width_mm, options, only_whole, drop_hardly_shown=False)
     assembly = assembled(shaping, deployment, cell_mm, phi)
@@ -164,6 +158,54 @@ def pinned(
         (float(at.real), float(at.imag)),
         -(-int(np.count_nonzero(tight)) // alike),
     )
+
+
+def _with_rims(notched: Shaping, opened: EndState, closed: EndState, spare: float, gone: float) -> Shaping:
+    """Shape the rims of notched pieces.
+
+    What cutting costs the flat outline is not known before neighbours have filled it.  So where the target is not shown
+    well, and less than ``spare`` is lost, what is left of it is spent as well, until that brings nothing.
+
+    Parameters
+    ----------
+    notched : Shaping
+    opened, closed : EndState
+    spare : float, mm2
+        How much of the flat outline may be lost.
+    gone : float, mm2
+        Area of panels that were dropped; infinite for a cover, which is cut whatever that costs.
+    """
+    options, allowed = notched.options, spare
+    best, shown = _shaped(notched, opened, closed, allowed, gone), math.inf
+    if options.weight > 0.5 and math.isfinite(gone):
+        shown = opened.match(best)
+    for _ in range(MORE_SPENT):
+        left = (closed.match(best) - options.least_flat) * closed.outline.area if shown < WELL_SHOWN else 0.0
+        if left < LEAST_LEFT * spare:
+            break
+        allowed += left
+        more = _shaped(notched, opened, closed, allowed, gone)
+        better = opened.match(more)
+        if better < shown + WORTHWHILE or closed.match(more) < options.least_flat:
+            break
+        best, shown = more, better
+    return best
+
+
+def _shaped(notched: Shaping, opened: EndState, closed: EndState, spare: float, gone: float) -> Shaping:
+    """Cut pieces along both outlines and extend them to these, where ``spare`` mm2 of the flat one may be lost."""
+    shaping, options = notched.copy(), notched.options
+    most = MOST_LOST * (spare - (1.0 - FILLED) * gone) if math.isfinite(gone) else math.inf
+    trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)
+    trim_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+    extend_to(shaping, opened, closed, 0.0)
+    extend_to(shaping, closed, opened, math.inf if options.weight < 0.5 else 0.0)
+    if options.weight > 0.5:
+        extend_to(shaping, opened, closed, MOST_BEYOND * (spare - closed.missing(shaping)))
+    round_off(shaping, (opened, closed))
+    if opened.outline.interiors:  # necks that lead through holes may be joined by what was added
+        trim_to(shaping, opened, closed, 0.0)
+    return shaping
 
 
 def _nodes_outside(deployment: Deployment, phi: float, cell_mm: float, outline: Polygon) -> list[int]:

@@ -220,7 +220,7 @@ class PosedPieces:
         """Pieces on pins at an angle, world, without a board: filled but at holes of the target."""
         import shapely
 
-        from kirigami_studio.assembly.checks import filled
+        from kirigami_studio.assembly.rim_pieces import filled
         from kirigami_studio.assembly.shaping import united
 
         outer, *holes = as_rings(target)

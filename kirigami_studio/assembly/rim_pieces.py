@@ -95,10 +95,30 @@ class EndState:
         """Area, mm2, of the outline that lies outside of the silhouette of all pieces, holes filled."""
         return float(less(self.outline, silhouette(united(*shaping.placed(self.turn)))).area)
 
+    def match(self, shaping: Shaping) -> float:
+        """Exact IoU of the outline with the silhouette of all pieces."""
+        return iou(filled(united(*shaping.placed(self.turn)), self.outline), self.outline)
+
+
+def iou(one: BaseGeometry, other: BaseGeometry) -> float:
+    """Exact intersection over union."""
+    both = one.intersection(other).area
+    return float(both / (one.area + other.area - both))
+
 
 def silhouette(shape: BaseGeometry) -> BaseGeometry:
     """The shape with its holes filled."""
     return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(shape)])
+
+
+def filled(shape: BaseGeometry, target: Polygon) -> BaseGeometry:
+    """Fill the openings of a shape, but for those at holes of the target."""
+    whole = silhouette(shape)
+    if not target.interiors:
+        return whole
+    rings = np.array([Polygon(ring) for part in shapely.get_parts(shape) for ring in part.interiors], dtype=object)
+    holes = shapely.union_all([Polygon(ring) for ring in target.interiors])
+    return shapely.difference(whole, shapely.union_all(rings[shapely.intersects(rings, holes)]))
 
 
 def _rim_shares(nodes: ComplexArray, panels: PanelTable, reach_mm: float) -> GeometryArray:

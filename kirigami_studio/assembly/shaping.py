@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -163,6 +164,12 @@ class Shaping:
             made = cls(motion, options)
             made._begin(blanks, known)
         return made
+
+    def copy(self) -> Shaping:
+        """Pieces to be shaped in another way, from where these are."""
+        other = copy(self)
+        other.bodies, other._parts, other._sweeps = self.bodies.copy(), dict(self._parts), self._sweeps
+        return other
 
     @property
     def faults(self) -> int:

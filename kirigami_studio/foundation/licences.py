@@ -75,13 +75,17 @@ class Package:
         return [text.strip("\n") for text in found if text]
 
     def _read(self, name: str) -> str | None:
-        """A file of the metadata, in UTF-8 or else in Latin-1, as old licences are."""
+        """A file of the metadata, in UTF-8 or else in Latin-1, as old licences are.
+
+        Frozen programs have no list of a package's files, so the folder of the metadata is found by its name.
+        """
         try:
             return self.distribution.read_text(name)
         except UnicodeDecodeError:
-            files = self.distribution.files or ()
-            place = next(file for file in files if ".dist-info/" in str(file) and str(file).endswith(f"/{name}"))
-            return Path(str(place.locate())).read_text(encoding="latin-1")
+            ours = normalised(self.metadata["Name"])
+            folders = Path(str(self.distribution.locate_file(""))).glob("*.dist-info")
+            folder = next(one for one in folders if normalised(one.name.partition("-")[0]) == ours)
+            return (folder / name).read_text(encoding="latin-1")
 
 
 def packages() -> dict[str, Package]:

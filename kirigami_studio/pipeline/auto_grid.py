@@ -30,7 +30,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.symmetry import TOLERANCE
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import TrialTask
-from kirigami_studio.polish.continuation import first_angles, sparingly
+from kirigami_studio.polish.continuation import first_angles
 from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries, symmetric_poses
@@ -67,7 +67,12 @@ FINER_LIMIT, FINER_PANELS = 24, 312
 TRIED_POSES = 2
 #: The same of pinned sheets that may be upright, and how many of their grids are tried.
 UPRIGHT_POSES, UPRIGHT_TRIED = 6, 3
-TRIAL = sparingly(FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
+#: Where short fits of a long target (logarithm of its length over its width) to a pinned sheet of another start are
+#: lost on the predicted grid, worth less than the second, grids of as many pieces are tried whose cells are longer, by
+#: up to the third.  From a disk those of a bone are worth 0.42 on 7 x 7 and 0.83 on 5 x 9 voids, those of eleven other
+#: long shapes 0.77 or more on the predicted grid.
+LONG_TARGET, LOST, LONGER_CELLS, AS_MANY = 0.4, 0.6, 0.65, 0.75
+TRIAL = (FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
 #: Proportions of sheets (logarithm of height over width) lie between the square and the shape's own, give or take this.
@@ -278,7 +283,7 @@ def predicted_for(request: Request) -> GridChoice:
         FINEST,
         request.start,
         request.least_gap_mm,
-        request.upright,
+        request.two_layers,
     )
 
 
@@ -319,13 +324,13 @@ def known_for(request: Request) -> GridChoice:
 def _key(request: Request) -> Hashable:
     """What a choice depends on."""
     sheet = (request.width_mm, request.least_feature_mm, request.least_gap_mm, request.fit_options.free_rim)
-    return request.target, request.phi, request.symmetry, request.start, request.upright, *sheet
+    return request.target, request.phi, request.symmetry, request.start, request.two_layers, *sheet
 
 
 def _tried(request: Request, trials: Trials) -> GridChoice:
     target, start, symmetry = request.silhouette, request.start, request.symmetry
     choice = predicted_for(request)
-    if request.upright:
+    if request.two_layers:
         return _tried_upright(request, choice, trials)
     hard = choice.code in ("grid.best_expected", "grid.finer_for_holes") and choice.predicted_match < TRIED_BELOW
     if not hard or request.pinned or not choice.poses or choice.poses[0].angle is None:
@@ -366,29 +371,59 @@ def _tried_upright(request: Request, choice: GridChoice, trials: Trials) -> Grid
     Pins are left out of account: of seven silhouettes the best short fits have the grid of the best pinned ones.
     """
     target, start = request.silhouette, request.start
-    if choice.predicted_match >= TRIED_BELOW or not start.is_plain:
+    if choice.predicted_match >= TRIED_BELOW:
         return choice
     poses = _poses(target, request.symmetry, start, pinned=True)
     least = request.least_feature_mm
     widest = MOST_GAP * request.width_mm / request.least_gap_mm
     widest = min(widest, SMALLEST_SHARE * request.width_mm / least) if least > 0.0 else widest
-    figures = ShapeFigures.of(target)
     near = [
         one
-        for one in _candidates(target, figures, poses, HIGHEST, start, coarsest=COARSEST_PINNED, upright=True)
-        if one.width <= widest and one.panels <= MOST_PIECES and one.grid[0] * one.grid[1] >= FEWEST_PINNED
+        for one in _candidates(
+            target,
+            ShapeFigures.of(target),
+            poses,
+            HIGHEST,
+            start,
+            start_room=LONGER_CELLS,
+            coarsest=COARSEST_PINNED,
+            upright=True,
+        )
+        if one.width <= widest and one.panels <= MOST_PIECES
     ]
-    picked = _apart(near)[:UPRIGHT_TRIED]
-    if len(picked) < 2:
-        return choice
-    worth = _worth(request, picked, trials)
-    best = max(worth, key=worth.__getitem__)
-    if worth[best] < TELLING:
+    if start.is_plain:
+        picked = _apart([one for one in near if one.grid[0] * one.grid[1] >= FEWEST_PINNED])[:UPRIGHT_TRIED]
+        worth = _worth(request, picked, trials) if len(picked) > 1 else {}
+    else:
+        worth = _worth_of_long_cells(request, choice, near, trials)
+    best = max(worth, key=worth.__getitem__, default=None)
+    if best is None or worth[best] < TELLING:
         return choice
     rows, columns = best.grid
     kept = shared_symmetries(target, best.grid, request.symmetry, start, pinned=True)
     fields = {"rows": rows, "columns": columns, "count": len(worth), "percent": 100.0 * best.match}
     return GridChoice(best.grid, tuple(kept), best.match, "grid.best_tried", tuple(fields.items()))
+
+
+def _worth_of_long_cells(
+    request: Request, choice: GridChoice, near: list[_Candidate], trials: Trials
+) -> dict[_Candidate, float]:
+    """Worth of grids of long cells, and of the predicted one, where fits of a long target are lost on that."""
+    proportions = Proportions.of(request.silhouette)
+    own = next((one for one in near if one.grid == choice.grid), None)
+    if own is None or proportions.along(proportions.direction) < LONG_TARGET:
+        return {}
+    worth = _worth(request, [own], trials)
+    if worth[own] >= LOST:
+        return {}
+    longer = [
+        one
+        for one in near
+        if one.proportion < own.proportion
+        and AS_MANY * own.panels <= one.panels <= own.panels
+        and one.start_error <= MOST_START_ERROR_PINNED
+    ]
+    return worth | _worth(request, longer, trials)
 
 
 def _apart(candidates: Sequence[_Candidate]) -> list[_Candidate]:

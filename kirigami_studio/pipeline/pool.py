@@ -39,6 +39,9 @@ THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 #: Seconds that a worker gets to end by itself.
 PATIENCE = 1.0
 
+#: Seconds for which a batch waits for one that was just stopped: that lets go between two looks at its cancel flag.
+HANDOVER = 0.1
+
 #: Seconds after which a worker that has work and says nothing is given up; it says that it lives twice a second.
 SILENCE = 60.0
 #: How many times as long one may take to be ready: its imports take seconds, on a busy machine a minute.
@@ -135,7 +138,7 @@ class Pool:
         self._broken = self.size < 2
         self._batch = 0
         self._winding_down = False
-        self._taken = threading.Lock()
+        self._taken, self._starting = threading.Lock(), threading.Lock()
 
     @property
     def usable(self) -> bool:
@@ -145,7 +148,7 @@ class Pool:
     @property
     def ready(self) -> bool:
         """Whether a worker can begin at once; not while the pool serves another run."""
-        if not self._taken.acquire(blocking=False):
+        if not self._taken.acquire(timeout=HANDOVER):
             return False
         try:
             self._on_reports()
@@ -153,14 +156,16 @@ class Pool:
         finally:
             self._taken.release()
 
-    def start(self) -> None:
-        """Start the workers that are missing; returns before they are ready."""
-        self.workers = [worker for worker in self.workers if worker.alive]
-        while not self._broken and len(self.workers) < self.size:
-            try:
-                self.workers.append(PolishingWorker(self._command, self._reports))
-            except OSError as error:
-                self._give_up(f"worker processes cannot be started: {error}")
+    def start(self, most: int | None = None) -> None:
+        """Start the workers that are missing, of ``most`` or all; returns before they are ready."""
+        wanted = self.size if most is None else min(most, self.size)
+        with self._starting:
+            self.workers = [worker for worker in self.workers if worker.alive]
+            while not self._broken and len(self.workers) < wanted:
+                try:
+                    self.workers.append(PolishingWorker(self._command, self._reports))
+                except OSError as error:
+                    self._give_up(f"worker processes cannot be started: {error}")
 
     def answers(
         self, request: Request, tasks: Sequence[tuple[int, Task]], wait: float
@@ -168,10 +173,10 @@ class Pool:
         """Hand out tasks (number, task) in order and yield answers as they come: None once the first are given, and
         every ``wait`` seconds without an answer.
 
-        Ends early when no worker is left, or at once when the pool already serves another run: the caller does what it
-        got no answer for.  Leaving the iterator stops the workers within one step.
+        Ends early when no worker is left, or soon when the pool already serves another run: the caller does what it got
+        no answer for.  Leaving the iterator stops the workers within one step.
         """
-        if self._broken or not self._taken.acquire(blocking=False):
+        if self._broken or not self._taken.acquire(timeout=HANDOVER):
             return
         self._batch += 1
         self._winding_down = False
@@ -197,7 +202,7 @@ class Pool:
     def _served(
         self, request: Request, waiting: deque[tuple[int, Task]], batch: int, wait: float
     ) -> Iterator[tuple[int, TaskResult] | None]:
-        self.start()
+        self.start(len(waiting))
         begun, heard_at = False, time.monotonic()
         while self.workers and (self._under_way(batch) or (waiting and not self._winding_down)):
             for worker in self.workers:

@@ -98,8 +98,8 @@ class Request(DesignChoices):
     least_gap_mm: float = field(
         default=0.0, kw_only=True, metadata=Setting(least=0.0, code="request.least_gap_out_of_range").metadata
     )
-    #: Whether a pinned sheet may be higher than wide where that suits the shape: its pieces are cut one by one
-    upright: bool = field(default=False, kw_only=True)
+    #: Whether pieces on pins lie in two layers.  They are cut one by one, so the sheet may be higher than wide
+    two_layers: bool = field(default=False, kw_only=True)
     grid_chosen: bool = field(default=False, kw_only=True)  #: Whether the run chose the grid
     start_chosen: bool = field(default=False, kw_only=True)  #: Whether the run chose the start
     #: 0..64; designs that are fitted from the uniform sheet instead of sampled, in several poses: at most a quarter of
@@ -174,9 +174,9 @@ class Request(DesignChoices):
     def may_cover_pieces(self) -> bool:
         """Whether covers may be made for pieces on pins that show the target badly.
 
-        Only where layers lie on each other, of which pieces are cut one by one (``upright``); prints have one layer.
+        Only where layers lie on each other, of which pieces are cut one by one (``two_layers``); prints have one.
         """
-        return self.covers and self.fitted_starts > 0 and self.second is None and self.upright and self.phi == 0.0
+        return self.covers and self.fitted_starts > 0 and self.second is None and self.two_layers and self.phi == 0.0
 
     @property
     def even(self) -> float:

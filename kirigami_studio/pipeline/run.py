@@ -101,6 +101,10 @@ SECOND_STEPS = 0.5
 #: So many samples get a second round whatever they lack: they are on the first row of cards.
 SECOND_ROUND_SHOWN = 4
 
+#: Where the first design matches by less than this after the first round, the shape is hard: the whole better half goes
+#: on, by this multiple of the steps that are left, and designs are finished by as many steps as were asked for.
+HARD_BELOW, HARD_STEPS = 0.988, 2.0
+
 #: Fits from the uniform sheet end once the best two agree in worth within this.  Until then poses whose fits agree with
 #: the best are tried another way, and others are left behind.
 AGREED = 0.001
@@ -441,6 +445,7 @@ class _Work:
         self.spare: list[Candidate] = []
         self.samples = 0
         self.evaluations = 0
+        self.hard = False
         self.cut_short = False
 
     def sample(self) -> Iterator[Event]:
@@ -482,11 +487,12 @@ class _Work:
         yield from self._polished(first, 0, total)
         if whole:
             return
+        self.hard = self._is_hard()
         best = max(SECOND_ROUND_LEAST, math.ceil(SECOND_ROUND * total))
         places = {one.index: place for place, one in enumerate(self.found)}
         now = self.ranking.ranked(self.found[places[candidate.index]] for candidate in chosen)[:best]
         # What the first round has improved gets the steps that are left, others those of both rounds.
-        near = self._near_first(now, MAY_WIN)
+        near = now if self.hard else self._near_first(now, MAY_WIN)
         again = [
             PolishTask(one, self._second_steps if one.polished else FIRST_ROUND + self._second_steps)
             for one in (near if len(near) > SECOND_ROUND_SHOWN else now[:SECOND_ROUND_SHOWN])
@@ -496,7 +502,13 @@ class _Work:
     @property
     def _second_steps(self) -> int:
         """Steps of a second round."""
-        return math.ceil(SECOND_STEPS * (self.request.polish - FIRST_ROUND))
+        share = HARD_STEPS if self.hard else SECOND_STEPS
+        return math.ceil(share * (self.request.polish - FIRST_ROUND))
+
+    def _is_hard(self) -> bool:
+        """Whether the first design so far misses so much that further steps are worth their time."""
+        first = min(self.found, key=self.ranking.key, default=None)
+        return first is not None and first.score.iou_exact < HARD_BELOW
 
     def _near_first(self, candidates: Iterable[Candidate], lacking: float) -> list[Candidate]:
         """Those candidates that lack no more worth than this of the first design so far."""
@@ -572,10 +584,15 @@ class _Work:
         return max(self.request.k, len(self.found))
 
     def finish(self) -> Iterator[Event]:
-        """Fit the best that differ once more, with the last weights, by the steps that are left."""
-        chosen = self._near_first(worth_a_fit(self.found, self.ranking), MAY_COME_FIRST)[:FINISHED]
-        left = self.request.polish - FIRST_ROUND - self._second_steps
-        tasks = [PolishTask(candidate, left) for candidate in chosen]
+        """Fit the best that differ once more, with the last weights, by the steps that are left; for a hard shape by
+        all.
+        """
+        chosen, steps = worth_a_fit(self.found, self.ranking), self.request.polish
+        if not self.hard:
+            chosen = self._near_first(chosen, MAY_COME_FIRST)
+            steps -= FIRST_ROUND + self._second_steps
+        chosen = chosen[:FINISHED]
+        tasks = [PolishTask(candidate, steps) for candidate in chosen]
         yield from self._replaced(chosen, tasks, FINISHING)
 
     def trim(self) -> Iterator[Event]:

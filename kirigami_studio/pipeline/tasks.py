@@ -159,14 +159,18 @@ class GuidedTask:
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit the way that the task says."""
+        fit = self.fitted(request, stopped)
+        (found,) = scored(request, [fit.sheet], self.index, Origin.GUIDED, fitted=True)
+        return TaskResult(found, fit.evaluations + 1)
+
+    def fitted(self, request: Request, stopped: Callable[[], bool], phases: tuple[FitPhase, ...] = ()) -> Fit:
+        """The fit alone; ``phases`` take the place of those of the way."""
         grid, options = request.chosen_grid, request.fit_options
         with one_blas_thread():
             target = fit_target(request, self.symmetry)
-            fit = fit_from_uniform(
-                target, grid, request.phi, self.angle, self.way, options, self.symmetry, stopped, self.hand
+            return fit_from_uniform(
+                target, grid, request.phi, self.angle, self.way, options, self.symmetry, stopped, self.hand, phases
             )
-        (found,) = scored(request, [fit.sheet], self.index, Origin.GUIDED, fitted=True)
-        return TaskResult(found, fit.evaluations + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,9 +189,14 @@ class TrialTask:
             fit = fit_by_stages(
                 request.silhouette, self.grid, request.phi, self.angle, self.phases, free, self.symmetry, start
             )
-        found = deploy(fit.sheet)
-        match = exact_iou(fit.pose.apply(found.outline(request.phi)), request.silhouette)
-        return TaskResult(None, fit.evaluations + 1, match - EVENNESS * evenness(found).area_cv)
+        return TaskResult(None, fit.evaluations + 1, match_and_worth(fit, request)[1])
+
+
+def match_and_worth(fit: Fit, request: Request) -> tuple[float, float]:
+    """Exact IoU of a sheet with the filled target in the pose of its fit, and that less the price of uneven panels."""
+    found = deploy(fit.sheet)
+    match = exact_iou(fit.pose.apply(found.outline(request.phi)), request.silhouette)
+    return match, match - EVENNESS * evenness(found).area_cv
 
 
 @dataclass(frozen=True, slots=True)

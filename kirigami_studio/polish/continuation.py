@@ -211,7 +211,7 @@ def fit_shape(
     check_gap(options.least_gap)
     search = _FitSearch(target, phi, cancel, options)
     guesses = [Sheet.of(start) for start in starts]
-    coarse = _coarser(grid)
+    coarse = coarser(grid)
     found = search.first_looks(coarse, effort)
     if coarse == grid:
         found += [search.from_guess(guess, grid) for guess in guesses]
@@ -235,10 +235,11 @@ def fit_from_uniform(
     symmetry: Symmetry | None = None,
     cancel: Callable[[], bool] = lambda: False,
     hand: int = 0,
+    phases: Sequence[FitPhase] = (),
 ) -> Fit:
     """One fit from the uniform sheet, turned by ``angle`` (radians): stiff and even first, led by the transport map of
     the inside, growing out of a round shape, or shrinking from a thickened one; a pinned one begins with the pinwheel
-    of a ``hand``, 1 or -1.
+    of a ``hand``, 1 or -1.  ``phases`` take the place of those of the way.
     """
     sheet, even = options.beginning(grid, hand), options.even
     pose, evaluations = _centred(sheet, phi, angle), 0
@@ -261,21 +262,6 @@ def fit_from_uniform(
             start_weight=options.start.weight,
         )
         sheet, pose, evaluations = fit.sheet, easy.frame.compose(fit.pose), evaluations + fit.evaluations
-    match way:
-        case Way.COOLED:
-            phases = cooled(even)
-        case Way.GUIDED:
-            phases = guided(even)
-        case Way.GROWN:
-            phases = sparingly(
-                FitPhase(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, even)),
-                FitPhase(LAST_STEPS, FINE, even, junctions=junction_weight(even)),
-            )
-        case Way.THICKENED:
-            phases = sparingly(
-                FitPhase(LOOK_STEPS, FAR, even),
-                FitPhase(LAST_STEPS, FINE, even, junctions=junction_weight(even)),
-            )
     fit = polish(
         sheet,
         target,
@@ -284,7 +270,7 @@ def fit_from_uniform(
         options.preference,
         pose,
         cancel,
-        phases=phases,
+        phases=tuple(phases) or _phases(way, even),
         transport=TransportMap.of(sheet, target, angle) if way is Way.GUIDED else None,
         least_panel=options.least_panel,
         least_gap=options.least_gap,
@@ -294,6 +280,20 @@ def fit_from_uniform(
         start_weight=options.start.weight,
     )
     return replace(fit, evaluations=evaluations + fit.evaluations)
+
+
+def _phases(way: Way, even: float) -> tuple[FitPhase, ...]:
+    """What counts on a way, once the target itself is fitted."""
+    match way:
+        case Way.COOLED:
+            return cooled(even)
+        case Way.GUIDED:
+            return guided(even)
+        case Way.GROWN:
+            look = FitPhase(LOOK_STEPS, FAR, max(LAST_GROWN_EVEN, even))
+        case Way.THICKENED:
+            look = FitPhase(LOOK_STEPS, FAR, even)
+    return sparingly(look, FitPhase(LAST_STEPS, FINE, even, junctions=junction_weight(even)))
 
 
 def _route(target: Outline, way: Way, even: float) -> list[tuple[EasyShape, float]]:
@@ -553,9 +553,9 @@ def _rotations(grid: tuple[int, int], effort: int, start: StartShape) -> list[fl
     return [turn * index / (count * effort) for index in range(count * effort)]
 
 
-def _coarser(grid: tuple[int, int]) -> tuple[int, int]:
-    """The grid to search on: at most about COARSE voids each way, of the same parity and nearly the same aspect."""
-    share = COARSE / max(grid)
+def coarser(grid: tuple[int, int], most: int = COARSE) -> tuple[int, int]:
+    """A grid of at most about so many voids each way, of the same parity and nearly the same aspect."""
+    share = most / max(grid)
     if share >= 1.0:
         return grid
 

@@ -76,6 +76,7 @@ class Preferences:
     width_mm: float = 100.0
     #: Whether the question for machine and material was answered, or declined.
     machine_asked: bool = field(default=False, metadata=_FLAG)
+    preview: bool = field(default=True, metadata=_FLAG)  #: Whether a design is previewed while the target changes
     motion: MotionPreference = field(default=MotionPreference.SYSTEM, metadata=_CHOICE)
     unit: LengthUnit = field(default=LengthUnit.MILLIMETRES, metadata=_CHOICE)
 

@@ -208,7 +208,7 @@ def request_for(
         room_mm=sizes_of(cut)[1],
         span_mm=_span_of(cut),
         least_gap_mm=pin_gap_mm(cut),
-        upright=pin_gap_mm(cut) > 0.0 and not is_printed(cut),
+        two_layers=pin_gap_mm(cut) > 0.0 and not is_printed(cut),
     )
 
 

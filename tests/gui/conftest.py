@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +104,8 @@ def window(qtbot: QtBot, files: PathAnswers) -> Iterator[MainWindow]:
     with qtbot.waitExposed(made):
         made.show()
     made.pages.turn(WindowPage.DESIGN)
+    # Tests that draw would wait for fits that they do not look at.
+    made.services.preferences.keep(replace(made.services.preferences.present, preview=False))
     for button in (Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton):
         QTest.mouseRelease(made, button, pos=QPoint(1, made.height() - 2))  # a test may have kept it pressed
     QTest.mouseMove(made, QPoint(1, made.height() - 2))

@@ -94,5 +94,5 @@ def test_that_covers_on_pins_are_made_where_pieces_miss_the_target(
         return Result(request, (cover,), 1, 0.0).ranked_as_cut({}, {}, {cover: cover.match - match})
 
     assert wants_covers_on_pins(result(0.94)) and not wants_covers_on_pins(result(0.96))
-    assert not wants_covers_on_pins(result(0.94, upright=False))  # printed: pieces lie in one plane
+    assert not wants_covers_on_pins(result(0.94, two_layers=False))  # printed: pieces lie in one plane
     assert not wants_covers_on_pins(result(0.94, covers=False))

@@ -34,6 +34,7 @@ class WindowState:
     running: bool  #: designs are being generated
     busy: bool  #: the chosen design is being trimmed or fitted again
     editing_target: bool  #: the drawing board is open
+    previews: bool  #: a design is previewed while the target changes
     page: str  #: that is shown
     arrangements: frozenset[str]  #: what can be done with the objects that are selected on the board
     comparing: bool  #: two designs are shown side by side

@@ -21,6 +21,7 @@ from kirigami_studio.gui.widgets.readable import TIMES, UNKNOWN, readable_size
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.placed import LARGEST_MM, Placed
 from kirigami_studio.outlines.reach import reach_of, reach_texts
+from kirigami_studio.studio.previewing import Preview
 from kirigami_studio.studio.targets import Picture
 
 OPENED_SIZE = mark("Size of the opened shape, mm; 3 in or 8.5 cm work too.")
@@ -158,7 +159,9 @@ class TargetPanel(Card):
         self.fill.setToolTip(tr("A sheet shows the shape without its holes; they can be opened again."))
         self.body.addWidget(self.tools)
         self.body.addLayout(row(self.start, (self.view, 1), spacing=8), 1)
-        self.body.addLayout(row((self.facts, 1), self.size_))
+        self.preview = label()
+        self.preview.setAccessibleDescription(tr("Preview of a design, no design of a run"))
+        self.body.addLayout(row((self.facts, 1), self.preview, self.size_, spacing=14))
         warnings = (self.start_refusal, self.reach, self.limit, self.cutting)
         for part in (self.opened, *warnings, self.fill, self.refine, self.threshold, self.notes, self.loose):
             self.body.addWidget(part)
@@ -282,6 +285,29 @@ class TargetPanel(Card):
         if placed is not None and reach is not None:
             self._reach_texts = reach_texts(reach, placed.outline, placed.scale if known else None)
         self._show_reach_text()
+
+    def show_preview(self, preview: Preview | None) -> None:
+        """Show a quick fit over the target, or none."""
+        self.view.show_design(None if preview is None else preview.design)
+        if preview is None:
+            self.preview.setText("")
+            self.preview.setToolTip("")
+            return
+        rows, columns = preview.grid
+        self.preview.setText(tr("Preview: match {percent:.1f} %", percent=100.0 * preview.match))
+        self.preview.setToolTip(
+            tr(
+                "A quick fit on {rows} \N{MULTIPLICATION SIGN} {columns} voids, not checked as cut. Press Generate for "
+                "designs.",
+                rows=rows,
+                columns=columns,
+            )
+        )
+
+    def show_no_preview(self, sentence: str) -> None:
+        """Say why there is no preview."""
+        self.preview.setText(tr("No preview"))
+        self.preview.setToolTip(sentence)
 
     def show_start_refusal(self, sentence: str) -> None:
         """Say why the next run would refuse the start; nothing where it would not, or that is not known."""

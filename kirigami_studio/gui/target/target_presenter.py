@@ -16,6 +16,7 @@ from kirigami_studio.gui.run.start_tile import StartTile
 from kirigami_studio.gui.session.collection import DiscardedDesigns
 from kirigami_studio.gui.session.messages import Message, Tone
 from kirigami_studio.gui.session.session import Session
+from kirigami_studio.gui.target.design_preview import DesignPreview
 from kirigami_studio.gui.target.pasting import PasteReader
 from kirigami_studio.gui.target.reshaping import TargetReshaper
 from kirigami_studio.gui.target.sketch_context import Change
@@ -53,6 +54,7 @@ class TargetPresenter(QObject):
         *,
         targeting: Targeting,
         pasting: PasteReader,
+        preview: DesignPreview,
         undo: Callable[[], None],
     ) -> None:
         super().__init__(panel)
@@ -69,6 +71,7 @@ class TargetPresenter(QObject):
         self.discarded.undo_wanted.connect(undo)
         self._connect_sources(pasting)
         self._connect_board()
+        self._connect_preview(preview)
         self._show_target(session.document)
 
     def _connect_sources(self, pasting: PasteReader) -> None:
@@ -98,6 +101,11 @@ class TargetPresenter(QObject):
         reshaping.refused.connect(self._refuse)
         reshaping.previewed.connect(panel.view.show_preview)
         reshaping.restarted.connect(panel.refine.restart)
+
+    def _connect_preview(self, preview: DesignPreview) -> None:
+        self.reshaping.previewed.connect(preview.propose)
+        preview.found.connect(self._panel.show_preview)
+        preview.refused.connect(self._panel.show_no_preview)
 
     def _on_board(self, outline: Outline) -> Outline:
         """Lay a contour at another threshold on its picture, which lies still meanwhile."""

@@ -22,6 +22,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QWidget
 
+from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.words import tr
 from kirigami_studio.gui.target.point_tool import PointTool
@@ -34,6 +35,7 @@ from kirigami_studio.gui.widgets.file_drops import FileDrops
 from kirigami_studio.gui.widgets.paths import ink
 from kirigami_studio.gui.widgets.target_items import (
     paint_axes,
+    paint_design_preview,
     paint_grid,
     paint_object,
     paint_proposal,
@@ -88,6 +90,7 @@ class TargetView(Canvas):
         super().__init__(parent)
         self.outline: Outline | None = None
         self._preview: Placed | None = None
+        self._design: PosedDesign | None = None
         self.reach: Reach | None = None
         self.underlay: Underlay | None = None
         self._editing = False
@@ -171,6 +174,11 @@ class TargetView(Canvas):
     def show_preview(self, placed: Placed | None) -> None:
         """Show what the target would become, or stop doing so."""
         self._preview = placed
+        self.update()
+
+    def show_design(self, design: PosedDesign | None) -> None:
+        """Show a quick fit to the target, or to what it would become, over it; or none."""
+        self._design = design
         self.update()
 
     def set_tool(self, tool: Tool) -> None:
@@ -265,8 +273,17 @@ class TargetView(Canvas):
         if self._preview is not None:
             paint_proposal(painter, transform.rings_to_pixels(self._preview.rings), self.palette_)
         if self._editing:
+            self._paint_design(painter, transform, self._preview or self.context.placed)
             paint_axes(painter, transform, self.context.mirror, QRectF(self.rect()), self.palette_)
         self.active.paint(painter, transform, self.palette_)
+
+    def _paint_design(self, painter: QPainter, transform: ViewTransform, placed: Placed | None) -> None:
+        """Draw the preview of a design over the shape that it is fitted to."""
+        if self._design is None or placed is None:
+            return
+        nodes = transform.to_pixels(self._design.nodes(self._design.phi_target) * placed.scale + placed.centre)
+        paint_design_preview(painter, self._design.panels(nodes), self.palette_)
+        paint_target_line(painter, transform.rings_to_pixels(placed.rings), self.palette_)
 
     def paint_outline(self, painter: QPainter, rings: tuple[FloatArray, ...]) -> None:
         """Draw the outline and its holes on the board: (L, 2) pixels each."""

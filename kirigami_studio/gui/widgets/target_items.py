@@ -11,7 +11,7 @@ from PySide6.QtGui import QBrush, QColor, QPainter, QPen
 
 from kirigami_studio.foundation.arrays import FloatArray, ShapeRings
 from kirigami_studio.gui.widgets.mismatch_items import stripes
-from kirigami_studio.gui.widgets.paths import ink, line_path, rings_path, round_pen
+from kirigami_studio.gui.widgets.paths import ink, line_path, paths_of_quads, rings_path, round_pen
 from kirigami_studio.gui.widgets.readable import readable_box
 from kirigami_studio.gui.widgets.theme import Palette
 from kirigami_studio.gui.widgets.view_transform import ViewTransform
@@ -92,6 +92,18 @@ def paint_proposal(painter: QPainter, rings: ShapeRings, palette: Palette) -> No
     """Draw a shape that would come when the button is let go: (L, 2) pixels."""
     ink(painter, round_pen(palette.accent, 2.0), fill=palette.accent, alpha=36)
     painter.drawPath(rings_path(rings))
+
+
+def paint_design_preview(painter: QPainter, panels: FloatArray, palette: Palette) -> None:
+    """Draw the panels (K, 4, 2), pixels, of a design that is only a preview: thin lines, nothing filled."""
+    line = QColor(palette.accent)
+    line.setAlpha(170)
+    pen = round_pen(palette.accent, 0.8)
+    pen.setColor(line)
+    painter.setPen(pen)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for path in paths_of_quads(panels):
+        painter.drawPath(path)
 
 
 def paint_field(painter: QPainter, one: QPointF, other: QPointF, palette: Palette) -> None:

@@ -174,7 +174,7 @@ class MainWindow(QMainWindow):
             *edit_commands.commands(project, targeting, dialogs, self.pasting, self.picturing),
             *draw_commands.commands(self.target, self.session.post),
             *design_commands.commands(services, self.stage, self.gallery, presenters, dialogs),
-            *view_commands.commands(self.pages, self.session, presenters, self.appearance),
+            *view_commands.commands(self.pages, self.session, presenters, self.appearance, services.preview.switch),
             *help_commands.commands(dialogs, self.files.open_sample),
         )
 
@@ -222,6 +222,7 @@ class MainWindow(QMainWindow):
             running=services.run.running,
             busy=services.chosen.busy,
             editing_target=self.target.editing,
+            previews=services.preview.on,
             page=self.pages.page.value,
             arrangements=self.target.arrangements(),
             comparing=stage.comparing,

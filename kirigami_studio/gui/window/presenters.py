@@ -99,6 +99,7 @@ class Presenters(QObject):
             session,
             targeting=services.targeting,
             pasting=pasting,
+            preview=services.preview,
             undo=services.project.undo,
         )
         self.stage = StagePresenter(
@@ -188,6 +189,7 @@ class Presenters(QObject):
         stage.comparing_changed.connect(self.comparison.follow)
         stage.comparing_changed.connect(self.all_designs.leave_to)
         self._pages.turned.connect(lambda page: self.all_designs.leave_to(page is not WindowPage.DESIGN))
+        self._pages.turned.connect(lambda page: self._services.preview.show_on(page is WindowPage.SHAPE))
         self.all_designs.shown_changed.connect(self._make_way)
 
     def _connect_target(self) -> None:

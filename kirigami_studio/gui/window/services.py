@@ -22,6 +22,7 @@ from kirigami_studio.gui.stage.curves import CurveReader
 from kirigami_studio.gui.stage.gripping import GripFinder
 from kirigami_studio.gui.stage.hand_editor import HandEditor
 from kirigami_studio.gui.stage.piece_reader import PieceReader
+from kirigami_studio.gui.target.design_preview import DesignPreview
 from kirigami_studio.gui.target.targeting import SecondReader, StartReader, Targeting
 
 
@@ -41,8 +42,8 @@ class Services(QObject):
         The designs of the gallery, and work on the chosen one.
     fabrication, cutting, exporter, verdict
         The numbers a design is cut with, its plan, its files, and what is to be expected of the sheet.
-    targeting, start, second
-        Read targets, start outlines and second targets.
+    targeting, start, second, preview
+        Read targets, start outlines and second targets; fit a sheet to the target while that changes.
     project : OpenProject
         Replaces the project, saves it, goes along its history.
     """
@@ -73,6 +74,7 @@ class Services(QObject):
         self.targeting = Targeting(session, self.run, self.stop, self)
         self.start = StartReader(session, self)
         self.second = SecondReader(session, self)
+        self.preview = DesignPreview(session, self.run, self.preferences, self)
         self.settings = SettingsEditor(session, {"start": self.start.stop, "second": self.second.stop})
         self.artwork = ArtworkKeeper(session, self)
         self.project = OpenProject(session, self.targeting, self.hand, self.preferences, self.stop, self)
@@ -80,6 +82,7 @@ class Services(QObject):
             self.targeting.remember_sources(earlier.targeting)
         self.hand.drafted.connect(self.stop_on_design)
         self.generation.begun.connect(self.stop_on_design)
+        self.generation.begun.connect(self.preview.stop)
         self.cutting.answered.connect(self.as_cut.read)
         self.cutting.answered.connect(self.verdict.take_plan)
         self.cutting.answered.connect(self.pieces.take)
@@ -111,6 +114,7 @@ class Services(QObject):
     def close(self) -> None:
         """Stop all work, and end the worker; the window is going away."""
         self.reader.close()
+        self.preview.close()
         self.cutting.close()
         self.estimates.close()
         self.pieces.stop()

@@ -30,11 +30,13 @@ def commands(
     session: Session,
     presenters: Presenters,
     appearance: Appearance,
+    switch_preview: Callable[[], None],
 ) -> tuple[Command, ...]:
     """Return the commands of the View menu."""
     stage = pages.stage
     return (
         *_turns(pages),
+        _preview(switch_preview),
         *_views(pages, presenters),
         *_deployment(pages, session),
         *_overlays(stage),
@@ -52,6 +54,11 @@ def _turns(pages: Pages) -> tuple[Command, ...]:
         return Command(tr("&View"), name, tr(text), tr(tip), partial(pages.turn, page), f"{number}", checked_when=shown)
 
     return tuple(turn(number, name, page) for number, (name, page) in enumerate(PAGE_COMMANDS.items(), start=1))
+
+
+def _preview(switch: Callable[[], None]) -> Command:
+    text, tip = tr("Pre&view while drawing"), tr("Show on the page Shape at once what a sheet makes of the target")
+    return Command(tr("&View"), "preview", text, tip, switch, gap=True, checked_when=attrgetter("previews"))
 
 
 def _is_on(page: WindowPage, now: WindowState) -> bool:

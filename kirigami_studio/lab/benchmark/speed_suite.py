@@ -19,6 +19,7 @@ from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load, names
 from kirigami_studio.pipeline.events import CandidateFound, CandidateImproved, Finished
 from kirigami_studio.pipeline.pool import Pool, worker_count
+from kirigami_studio.pipeline.preview import preview
 from kirigami_studio.pipeline.request import Request, as_in_paper
 from kirigami_studio.pipeline.run import best_of, run, sample, with_grid
 from kirigami_studio.pipeline.tasks import scored
@@ -34,6 +35,8 @@ from kirigami_studio.settings.design import POLISH_STEPS
 RUNS, WARMING, RUN_WORKERS = ("heart", "star", "butterfly", "drop", "hexagon"), "egg", 2
 #: Silhouettes whose runs are timed in one process, so that all their processor time is seen.
 ALONE = ("heart", "butterfly")
+#: Silhouettes that are previewed, and how many changes of each are: the first one warms up.
+PREVIEWED, CHANGES = ("heart", "star", "butterfly", "drop", "hexagon", "bone", "fish"), 6
 #: Candidates of the timed runs, and steps of the timed fits.
 K, STEPS = 32, 10
 #: Runs of what is short, of which the fastest counts.
@@ -204,6 +207,46 @@ def _timed_run(request: Request, pool: Pool) -> dict[str, object]:
     raise Cancelled("run.no_result")
 
 
+def preview_timings(shapes: Sequence[str] = PREVIEWED, *, changes: int = CHANGES) -> dict[str, dict[str, object]]:
+    """Time previews of targets that change: each is turned a little, so that it is new to the program.
+
+    Parameters
+    ----------
+    shapes : sequence of str
+        Silhouettes of the library.
+    changes : int
+        Of each; the first one only warms up.
+
+    Returns
+    -------
+    figures : dict
+        By silhouette, medians over its changes, at grid auto in one process: the ``grid``; wall and processor seconds
+        from the changed target to the first preview (``first_s``, ``first_processor_s``) and its match (``match``);
+        processor seconds to the end of refining (``refined_processor_s``), and the match then (``refined_match``).
+    """
+    pool = Pool(0)
+    figures: dict[str, dict[str, object]] = {}
+    for shape in shapes:
+        timed = [_timed_preview(_unseen(load(shape), number), pool) for number in range(1, changes + 1)][1:]
+        grids, numbers = zip(*timed, strict=True)
+        names = ("first_s", "first_processor_s", "match", "refined_processor_s", "refined_match")
+        medians = np.median(np.array(numbers), axis=0).tolist()
+        figures[shape] = {"grid": grids[0], **dict(zip(names, medians, strict=True))}
+    return figures
+
+
+def _timed_preview(target: Outline, pool: Pool) -> tuple[str, tuple[float, ...]]:
+    """Grid, and the figures of one preview."""
+    began, processor = time.perf_counter(), time.process_time()
+    found = preview(Request(target, None), pool=pool)
+    first = next(found)
+    seconds = time.perf_counter() - began, time.process_time() - processor
+    last = [first, *found][-1]
+    spent = time.process_time() - processor
+    rows, columns = first.fit.sheet.grid
+    return f"{rows}x{columns}", (*seconds, first.match, spent, last.match)
+
+
 def _step_seconds(candidate: Candidate, target: Outline) -> float:
     """One step without corrections: derivative, normal equations, solution and the decoding of the trial."""
     rows, columns = candidate.sheet.grid
@@ -264,5 +307,6 @@ def _fastest(work: Callable[[], object]) -> float:
 
 
 def all_timings() -> dict[str, object]:
-    """Time runs (``runs``, ``runs_alone`` in one process), scores and fits."""
-    return {"runs": run_timings(), "runs_alone": run_timings(ALONE, workers=0), **polish_timings()}
+    """Time runs (``runs``, ``runs_alone`` in one process), previews, scores and fits."""
+    runs = {"runs": run_timings(), "runs_alone": run_timings(ALONE, workers=0)}
+    return {**runs, "previews": preview_timings(), **polish_timings()}

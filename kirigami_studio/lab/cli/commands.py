@@ -159,6 +159,11 @@ def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -
         ),
         *more,
         *TRAINING_DESIGNS,
+        option(
+            "--still",
+            action="store_true",
+            help="targets as they are, not a little turned and moved: as in the paper, and less work in each step",
+        ),
         AVERAGE_DECAY,
         RECORDED,
         *run_of_training(500),

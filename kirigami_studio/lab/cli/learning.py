@@ -245,6 +245,8 @@ def _train_baseline(
         designs=digest_of_designs(designs),
         seed=arguments.seed,
     )
+    if arguments.still:
+        settings = replace(settings, vertex_noise=0.0, turn_noise=0.0)
     folder = Path(arguments.out)
     records = train_baseline(
         settings,

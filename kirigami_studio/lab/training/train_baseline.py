@@ -16,9 +16,10 @@ import torch
 from torch import Tensor
 
 from kirigami_studio.foundation.errors import ModelError
-from kirigami_studio.lab.baselines.conditional import ConditionalGenerator
+from kirigami_studio.generator.conditioning import square_pose, turned
+from kirigami_studio.lab.baselines.conditional import ConditionalGenerator, FieldPixels
 from kirigami_studio.lab.baselines.stored import generator_of
-from kirigami_studio.lab.training.corpus import ChunkBatches, TargetNoise
+from kirigami_studio.lab.training.corpus import Chunk, ChunkBatches, TargetNoise, TrainingDesigns
 from kirigami_studio.lab.training.dataset import Split, designs_of, digest_of_designs
 from kirigami_studio.lab.training.learner import CHECKPOINT, Checkpoint, Learner, adamw, opened, trained
 from kirigami_studio.lab.training.ranks import Ranks
@@ -27,6 +28,8 @@ from kirigami_studio.lab.training.train_flow import LARGEST_GRADIENT, schedule
 
 #: Designs generated together, and how often each is visited before the next.
 CHUNK, PASSES = 32_768, 2
+#: Masks that are drawn in one batch.
+DRAWN_TOGETHER = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +52,7 @@ class BaselineSettings:
     average_decay : float
         Of the exponential moving average that is kept.
     vertex_noise, turn_noise : float
-        See :class:`kirigami_studio.lab.training.corpus.TargetNoise`.
+        See :class:`kirigami_studio.lab.training.corpus.TargetNoise`.  Both 0: masks are drawn once, as in the paper.
     chunk : int
         Endless designs generated together.
     family, designs : str
@@ -127,6 +130,27 @@ def trained_baseline(settings: BaselineSettings, folder: Path, device: torch.dev
     return network.to(device).eval()
 
 
+class Masked:
+    """Designs with the masks of their silhouettes as they lie, drawn once for each chunk.
+
+    Parameters
+    ----------
+    corpus : TrainingDesigns
+        With polygons.
+    pixels : FieldPixels
+    """
+
+    def __init__(self, corpus: TrainingDesigns, pixels: FieldPixels) -> None:
+        self.seed, self.chunk_size, self.lattice = corpus.seed, corpus.chunk_size, corpus.lattice
+        self._corpus, self._pixels = corpus, pixels
+
+    def chunk(self, number: int) -> Chunk:
+        """z (C, m * n) and, in place of polygons, masks (C, 1, latent, latent) of the targets stood upright."""
+        found = self._corpus.chunk(number)
+        parts = found.polygons.split(DRAWN_TOGETHER)
+        return Chunk(found.z, torch.cat([self._pixels.masks(turned(part, -square_pose(part))) for part in parts]))
+
+
 class BaselineRun:
     """The mutable part of a training run.
 
@@ -161,8 +185,11 @@ class BaselineRun:
         self.learner = Learner(network, optimiser, self.generator, device)
         pixels = network.pixels
         corpus = designs_of(settings.family, designs, pixels.rows, pixels.columns, self.seed, settings.chunk, device)
-        self.designs = ChunkBatches(corpus, ranks.share(settings.batch), PASSES)
         self.disturbance = TargetNoise(settings.vertex_noise, settings.turn_noise)
+        self.still = not (settings.vertex_noise or settings.turn_noise)
+        self.designs = ChunkBatches(
+            Masked(corpus, pixels) if self.still else corpus, ranks.share(settings.batch), PASSES
+        )
         self._descended: Callable[..., tuple[Tensor, ...]] = self._descend
         if recorded:
             self._descended = Recorded(self._descend, self.generator)
@@ -187,10 +214,10 @@ class BaselineRun:
         self.learner.step += 1
         return {"loss": float(loss)}
 
-    def _descend(self, z: Tensor, polygons: Tensor) -> tuple[Tensor]:
-        """One step on designs z (B, m * n) with their silhouettes (B, L, 2); returns the loss."""
+    def _descend(self, z: Tensor, targets: Tensor) -> tuple[Tensor]:
+        """One step on designs z (B, m * n) with their silhouettes (B, L, 2), or masks of these; returns the loss."""
         network = self.learner.network
-        masks = network.pixels.masks(self.disturbance.seen(polygons, self.generator))
+        masks = targets if self.still else network.pixels.masks(self.disturbance.seen(targets, self.generator))
         loss = self.learner.loss(lambda: network.loss(z, masks, self.generator))
         self.learner.descend(loss, LARGEST_GRADIENT)
         return (loss.detach(),)

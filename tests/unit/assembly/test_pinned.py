@@ -13,12 +13,12 @@ import pytest
 import shapely
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from kirigami_studio.assembly.checks import PinnedReport, check_pinned, iou, neck_mm, pins_apart, wall_mm
+from kirigami_studio.assembly.checks import PinnedReport, check_pinned, neck_mm, pins_apart, wall_mm
 from kirigami_studio.assembly.motion import LayerMotion, freedom
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Piece, RoundHole
 from kirigami_studio.assembly.pinned import PinnedPlan, pinned
-from kirigami_studio.assembly.rim_pieces import shortest_links
+from kirigami_studio.assembly.rim_pieces import iou, shortest_links
 from kirigami_studio.assembly.shaping import Shaping, less
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.posed_design import PosedDesign
@@ -318,6 +318,15 @@ def test_that_pins_outside_of_the_target_are_left_out_where_the_motion_does_not_
     motion = LayerMotion.of(assembly.deployment, assembly.cell_mm, 0.0)
     assert freedom(replace(motion, hinged=motion.hinged & np.isin(motion.nodes, list(pinned_nodes)))) == 1
     assert max(overlap_at(assembly, float(phi)) for phi in np.linspace(math.pi, 0.0, 25)) < 1e-6
+
+
+def test_that_what_cutting_leaves_of_the_flat_outline_is_spent_on_a_target_that_is_not_shown_well() -> None:
+    """Neighbours fill most of what is cut: at first the pieces match by 0.972, and the flat ones by 0.959."""
+    points = [(0, 0), (1.25, 0), (1.25, 1), (0.9, 1), (0.62, 0.6), (0.35, 1), (0, 1)]
+    design, target = pinwheel(3, 4)[0], Outline.from_points(points, "deeply notched")
+    design = replace(design, pose=align(design.deployment.outline(0.0), target.points))
+    figures = check_pinned(pinned(design, target, 130.0, replace(BRADS, least_flat=0.95)), 2).figures
+    assert figures.match > 0.975 and figures.flat_match > 0.95
 
 
 def test_that_pieces_are_made_on_one_thread_of_blas(

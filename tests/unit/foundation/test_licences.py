@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from importlib.metadata import requires
+from importlib.metadata import Distribution, requires
 from pathlib import Path
 
 import pytest
 
 from kirigami_studio.cli import main
-from kirigami_studio.foundation.licences import OURS, components, normalised, packages
+from kirigami_studio.foundation.licences import OURS, Package, components, normalised, packages
 
 
 def test_that_every_part_has_a_licence_and_its_text() -> None:
@@ -42,6 +42,16 @@ def test_that_what_is_no_python_package_is_listed_from_the_bundled_tables(reposi
     table = json.loads((repository / "resources" / "licences" / "components.json").read_text(encoding="utf-8"))
     names = {part.name for part in components()}
     assert len(table) == 2 and {entry["name"] for entry in table} <= names
+
+
+def test_that_an_old_licence_is_read_where_no_list_of_files_is(tmp_path: Path) -> None:
+    """As in a frozen program."""
+    folder = tmp_path / "Some_Name-1.0.dist-info"
+    folder.mkdir()
+    (folder / "METADATA").write_text("Metadata-Version: 2.1\nName: some-name\nVersion: 1.0\nLicense-File: OLD\n")
+    (folder / "OLD").write_bytes("© Müller".encode("latin-1"))
+    (found,) = Distribution.discover(name="some-name", path=[str(tmp_path)])
+    assert Package(found, found.metadata).texts == ["© Müller"]
 
 
 @pytest.mark.parametrize(

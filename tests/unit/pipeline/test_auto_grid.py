@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -30,6 +31,7 @@ from kirigami_studio.pipeline.auto_grid import (
 )
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import with_grid
+from kirigami_studio.pipeline.tasks import TrialTask
 from kirigami_studio.polish.flat_sheet import width_in_cells
 
 
@@ -150,9 +152,28 @@ def test_that_sheets_on_pins_are_upright_for_long_shapes_and_have_no_more_pieces
     assert rows <= columns
 
 
+@pytest.mark.parametrize(
+    ("name", "worth", "lost"), [("bone", 0.42, True), ("bone", 0.77, False), ("clover", 0.42, False)]
+)
+def test_that_cells_of_a_disk_on_pins_are_long_where_fits_of_a_long_target_are_lost(name, worth, lost) -> None:
+    asked: list[tuple[int, int]] = []
+
+    def trials(request: Request, tasks: Sequence[TrialTask]) -> list[float]:
+        asked.extend(task.grid for task in tasks)
+        return [0.84 if task.grid == (5, 9) else worth for task in tasks]
+
+    disk = {"start": start_shape("circle"), "width_mm": 240.0, "least_gap_mm": 9.0, "two_layers": True}
+    request = Request(load(name), None, k=4, polish=0, **disk)
+    predicted = predicted_for(request).grid
+    assert predicted[0] == predicted[1]
+    assert chosen_for(request, trials).grid == ((5, 9) if lost else predicted)
+    assert all(rows < columns and (rows + 1) * (columns + 1) <= 64 for rows, columns in set(asked) - {predicted})
+    assert (len(set(asked)) > 1) is lost
+
+
 def test_that_short_fits_decide_whether_a_sheet_on_pins_is_square_or_upright() -> None:
     def chosen(name: str) -> GridChoice:
-        return chosen_for(Request(load(name), None, k=4, polish=0, width_mm=240.0, least_gap_mm=9.0, upright=True))
+        return chosen_for(Request(load(name), None, k=4, polish=0, width_mm=240.0, least_gap_mm=9.0, two_layers=True))
 
     cross, arrow = chosen("cross"), chosen("arrow")
     assert cross.grid == (8, 8) and cross.code == arrow.code == "grid.best_tried"

@@ -21,6 +21,7 @@ from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline import auto_grid, worker
 from kirigami_studio.pipeline.pool import Pool, worker_command
+from kirigami_studio.pipeline.preview import preview
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import Watch, answers, gains, grid_choice
 from kirigami_studio.pipeline.tasks import PolishTask, PolishTogether, Task, TaskResult, scored
@@ -99,6 +100,14 @@ def wait_until_ready(pool: Pool) -> None:
         assert pool.ready or pool.usable
         time.sleep(0.02)
     assert pool.ready
+
+
+def test_that_a_worker_previews_the_design_that_one_process_does(pool: Pool, request_for_heart: Request) -> None:
+    while not pool.ready:
+        time.sleep(0.01)
+    first, here = (preview(request_for_heart, pool=one) for one in (pool, Pool(0)))
+    assert next(first).fit.sheet == next(here).fit.sheet
+    first.close()
 
 
 def test_that_fits_scored_together_are_those_of_one_by_one(

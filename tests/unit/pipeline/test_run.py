@@ -23,7 +23,16 @@ from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import USUAL, Ranking
 from kirigami_studio.pipeline.redesign import refitted, rescored
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import LEAST_DRAWN, best_of, best_of_each, decodings, drawn, run, sample
+from kirigami_studio.pipeline.run import (
+    HARD_BELOW,
+    LEAST_DRAWN,
+    best_of,
+    best_of_each,
+    decodings,
+    drawn,
+    run,
+    sample,
+)
 from kirigami_studio.pipeline.tasks import GuidedTask, PolishTask, TaskResult, scored
 from kirigami_studio.polish import continuation
 from tests.refusals import refused
@@ -197,9 +206,9 @@ def test_that_polishing_can_be_cancelled(request_for_heart: Request) -> None:
     assert caught.value.code == "run.stopped_polishing"
 
 
-def test_that_no_sample_takes_more_steps_than_were_asked_for(
-    request_for_heart: Request, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def steps_asked(monkeypatch: pytest.MonkeyPatch) -> Counter[int]:
+    """Steps that designs were asked to take, by their numbers."""
     asked: Counter[int] = Counter()
     fitted = PolishTask.fitted
 
@@ -208,9 +217,23 @@ def test_that_no_sample_takes_more_steps_than_were_asked_for(
         return fitted(task, *given)  # type: ignore[arg-type]
 
     monkeypatch.setattr(PolishTask, "fitted", counted)
-    best_of(replace(request_for_heart, grid=(5, 6), polish=12), pool=Pool(0))
-    assert set(asked) == {0, 1, 2, 3}
-    assert max(asked.values()) == 12
+    return asked
+
+
+def test_that_no_sample_of_an_easy_shape_takes_more_steps_than_were_asked_for(steps_asked: Counter[int]) -> None:
+    best_of(Request(load("square"), grid=(6, 6), k=4, seed=3, guided=0, polish=12), pool=Pool(0))
+    assert set(steps_asked) == {0, 1, 2, 3}
+    assert max(steps_asked.values()) == 12
+
+
+def test_that_a_hard_shape_gets_all_steps_and_its_first_designs_get_them_twice(steps_asked: Counter[int]) -> None:
+    wish = Request(load("star"), grid=(5, 6), k=12, seed=3, guided=0, polish=12, covers=False)
+    assert best_of(wish, pool=Pool(0)).best.score.iou_exact < HARD_BELOW
+    most = sorted(steps_asked.values(), reverse=True)
+    # The worse half begins with two steps less, and four designs are left behind.
+    assert all(22 <= steps <= 24 for steps in most[:3])
+    assert all(10 <= steps <= 12 for steps in most[3:8])
+    assert set(most[8:]) <= {3, 5}
 
 
 def test_that_workers_and_one_process_give_the_same_result(request_for_heart: Request) -> None:

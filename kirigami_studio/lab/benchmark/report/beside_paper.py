@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from kirigami_studio.lab.baselines.solvers import SOLVERS
 from kirigami_studio.lab.benchmark.paper_tables import GRPO_CALLS, TRAINING_BATCH, TRAINING_STEPS
-from kirigami_studio.lab.benchmark.report.cells import Figures, measured, share, start_of
+from kirigami_studio.lab.benchmark.report.cells import Figures, is_replaced, measured, share, start_of
 
 MIXED = "mixed"
 #: Pixels each way, with which networks for 10 x 10 ratios smooth their fields.
@@ -99,10 +99,10 @@ class Compared:
         return self.siou >= self.paper - self.paper_spread
 
 
-def beside_paper_section(
+def rows_beside_paper(
     solvers: Sequence[Figures], generators: Sequence[Figures], grpo: Figures | None, falling: Collection[str] = ()
-) -> Iterator[str]:
-    """Every row that the paper has, too; nothing where there is none.
+) -> list[Compared]:
+    """Every row that the paper has, too.
 
     Parameters
     ----------
@@ -112,21 +112,26 @@ def beside_paper_section(
     falling : collection of str
         Training runs whose match on validation fell.
     """
-    rows = [
+    return [
         *(row for figures in solvers for row in _solver_rows(figures)),
         *(row for figures in generators for row in _generator_rows(figures, falling)),
         *_aligned_rows(grpo),
     ]
-    if not rows:
-        return
+
+
+def counts(rows: Sequence[Compared]) -> str:
+    """How many rows are ahead of the paper: those like for like, and all."""
     alike = [row for row in rows if not row.apart]
-    yield "## Beside the paper"
-    yield ""
-    yield (
+    return (
         f"Like for like {_count(alike, 'ahead')} rows are ahead of the paper, and {_count(alike, 'within_spread')} are "
         "ahead or behind by no more than the spread that it gives. Of all rows of Tables 1 to 3 that it has, too, "
         f"{_count(rows, 'ahead')} are ahead."
     )
+
+
+def beside_paper_section(rows: Sequence[Compared]) -> Iterator[str]:
+    """Our rows and the paper's, and why some are behind."""
+    yield "## Beside the paper"
     yield ""
     yield (
         "*Like for like*: its solvers with its settings; its networks where they were trained at its budget "
@@ -209,12 +214,15 @@ def _causes(trained: Figures, family: str) -> list[str]:
 
 
 def _aligned_rows(figures: Figures | None) -> Iterator[Compared]:
-    """The last rows of Table 3's runs."""
-    families = {} if figures is None else figures["families"]
-    for family, found in families.items():
+    """The last rows of Table 3's runs, without those of a start that is no longer bundled."""
+    if figures is None:
+        return
+    for family, found in figures["families"].items():
         for start, runs in found["starts"].items():
             for name, snapshots in runs.items():
-                settings = {} if figures is None else figures["training"][start][name]
+                settings = figures["training"][start][name]
+                if is_replaced(start, settings):
+                    continue
                 trained = {"calls": snapshots[-1]["calls"], "family": settings.get("family", MIXED)}
                 apart = ["the bundled prior"] if start == "bundled prior" else _causes(trained, family)
                 full_name = f"{name} (from {start_of(start, settings)})"

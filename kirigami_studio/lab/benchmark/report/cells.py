@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from kirigami_studio.generator.weights import digest_of, variants
@@ -47,6 +48,12 @@ def points(paired: Figures | None, name: str, factor: float = 100.0, digits: int
     return f"{factor * found['mean']:+.{digits}f} ({low} .. {high})"
 
 
+def seeds_of(figures: Figures) -> str:
+    """The seeds of a call, as a table's title has them."""
+    seeds = figures["seeds"]
+    return f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}"
+
+
 def is_earlier(figures: Figures) -> bool:
     """Whether figures of a suite lack the released code's measure."""
     return any(table.get("uniform_siou_released") is None for table in figures["families"].values())
@@ -58,9 +65,29 @@ def rows_of_older_weights(measured: Mapping[str, str]) -> list[str]:
     return [name for name, digest in measured.items() if bundled.get(name, digest) != digest]
 
 
+def is_replaced(start: str, settings: Figures) -> bool:
+    """Whether other weights are now bundled by the name of what a run of GRPO began with."""
+    variant = start.removeprefix("bundled ")
+    return variant != start and bool(rows_of_older_weights({variant: str(settings.get("start", ""))}))
+
+
 def start_of(start: str, settings: Figures) -> str:
     """Name of the weights that a run of GRPO began with, bundled still or earlier."""
-    variant = start.removeprefix("bundled ")
-    if variant != start and rows_of_older_weights({variant: str(settings.get("start", ""))}):
-        return f"an earlier {variant}"
-    return f"the {start}"
+    return f"an earlier {start.removeprefix('bundled ')}" if is_replaced(start, settings) else f"the {start}"
+
+
+def by_family(suites: Iterable[Figures]) -> list[Figures]:
+    """Figures of one family each, with the rows of all calls that differ in nothing but the rows; later ones count.
+
+    Calls differ where their settings, seeds or numbers of targets do.
+    """
+    found: dict[str, Figures] = {}
+    for figures in suites:
+        settings = {name: value for name, value in figures["settings"].items() if name != "version"}
+        for family, table in figures["families"].items():
+            key = json.dumps([family, table["targets"], figures["seeds"], settings])
+            joined = found.setdefault(key, {**figures, "families": {family: {**table, "rows": {}}}})
+            joined["families"][family]["rows"].update(table["rows"])
+            for name in ("weights", "trained"):
+                joined[name] = {**joined.get(name, {}), **figures.get(name, {})}
+    return list(found.values())

@@ -16,6 +16,7 @@ from kirigami_studio.lab.benchmark.report.cells import (
     measured,
     points,
     rows_of_older_weights,
+    seeds_of,
     share,
     spread,
     start_of,
@@ -40,8 +41,7 @@ def generator_section(suites: Sequence[Figures], pictures: dict[str, bytes]) -> 
 
 def _generator_tables(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
     """The tables of one call of the suite, by family."""
-    seeds, k = figures["seeds"], figures["settings"]["k"]
-    shared = f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}; distance and IS of {k} samples a target"
+    shared = f"{seeds_of(figures)}; distance and IS of {figures['settings']['k']} samples a target"
     notes = []
     if older := rows_of_older_weights(figures["weights"]):
         notes.append(

@@ -13,8 +13,13 @@ from pathlib import Path
 
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.files import write_atomically
-from kirigami_studio.lab.benchmark.report.beside_paper import beside_paper_section, deviation_section
-from kirigami_studio.lab.benchmark.report.cells import Figures
+from kirigami_studio.lab.benchmark.report.beside_paper import (
+    beside_paper_section,
+    counts,
+    deviation_section,
+    rows_beside_paper,
+)
+from kirigami_studio.lab.benchmark.report.cells import Figures, by_family
 from kirigami_studio.lab.benchmark.report.generators import generator_section, grpo_section, training_section
 from kirigami_studio.lab.benchmark.report.others import leaderboard_section, literature_section
 from kirigami_studio.lab.benchmark.report.sheets import as_cut_section, shapes_section
@@ -86,8 +91,10 @@ def made_from(folder: Path) -> Report:
         opening = len(lines)
         logs = {path.parent.name: _log(path) for path in sorted((folder / TRAINING).glob("*/log.jsonl"))}
         solvers, generators = _suites(folder, SOLVERS), _suites(folder, GENERATORS)
-        beside = list(beside_paper_section(solvers, generators, _read(folder / GRPO), falling(logs)))
-        lines += [*beside, *deviation_section()] if beside else []
+        beside = rows_beside_paper(solvers, generators, _read(folder / GRPO), falling(logs))
+        if beside:
+            lines[OPENING.index(FIRST)] += f" {counts(beside)}"
+            lines += [*beside_paper_section(beside), *deviation_section()]
         if solvers:
             lines += solver_section(solvers, pictures)
         for name, section in ((BEST_OF_K, best_of_k_section), (GRID_SWEEP, grid_sweep_section)):
@@ -129,13 +136,16 @@ def made_from(folder: Path) -> Report:
     return Report("\n".join(lines) + "\n", pictures)
 
 
-OPENING = (
-    "# The paper's experiments",
-    "",
+FIRST = (
     "*sIoU* is how much of a target a design covers in the pose that fits best, nothing left out: overlap by union. "
     "*As released* is the same as the paper's authors measure it in their released code, which drops what leaves the "
     "design's picture. *Uniform sheet* is the floor: a sheet whose ratios are all 1, which is no design at all. It "
-    "matches most of a target already, and more of it as released: a row is worth what it has above that floor.",
+    "matches most of a target already, and more of it as released: a row is worth what it has above that floor."
+)
+OPENING = (
+    "# The paper's experiments",
+    "",
+    FIRST,
     "",
     "Written by `kirigami-studio benchmark report --runs FOLDER --out FILE.md` from the JSON in the folder beside it.",
     "Numbers in brackets are the paper's.",
@@ -152,9 +162,9 @@ def falling(logs: Mapping[str, Sequence[Mapping[str, float]]]) -> frozenset[str]
 
 
 def _suites(folder: Path, name: Path) -> list[Figures]:
-    """Figures of every call of a suite, those of the plain folder first."""
+    """Figures of every call of a suite by family, those of the plain folder first."""
     paths = sorted(folder.glob(f"{name.parent}*/{name.name}"))
-    return [figures for figures in map(_read, paths) if figures is not None]
+    return by_family(figures for figures in map(_read, paths) if figures is not None)
 
 
 def _read(path: Path) -> Figures | None:

@@ -10,7 +10,7 @@ import pytest
 
 from kirigami_studio.generator.weights import digest_of
 from kirigami_studio.lab.benchmark.generator_table import Trained
-from kirigami_studio.lab.benchmark.report.beside_paper import beside_paper_section
+from kirigami_studio.lab.benchmark.report.beside_paper import beside_paper_section, counts, rows_beside_paper
 from kirigami_studio.lab.benchmark.report.cells import start_of
 from kirigami_studio.lab.benchmark.report.whole import falling, made_from
 from kirigami_studio.lab.paper_evaluator import released_floor, released_match
@@ -52,22 +52,23 @@ def test_that_only_networks_at_the_papers_budget_on_their_family_count_like_for_
         "stopped": {**AT_BUDGET, "steps": 179, "batch": 8, "calls": 5728},
     }
     rows = {name: row(0.95, 0.94) for name in (*trained, "unrecorded")}
-    lines = list(beside_paper_section([], [suite("released", rows, trained), suite("sobol", rows, trained)], None))
-    cells = compared(*lines)
+    found = rows_beside_paper([], [suite("released", rows, trained), suite("sobol", rows, trained)], None)
+    cells = compared(*beside_paper_section(found))
     assert [name for name, found in cells.items() if found[-1] == "yes"] == ["paper, released", "aligned, released"]
     for name, part in (("brief", "3000 of 31250"), ("mixed", "mixture"), ("stopped", "5728 of 10000")):
         assert part in cells[f"{name}, released"][-1]
     assert "released" in cells["paper, sobol"][-1] and cells["unrecorded, released"][-1].startswith("no: ")
-    assert lines[2].startswith("Like for like 2 of 2 ") and "12 of 12" in lines[2]
+    assert counts(found).startswith("Like for like 2 of 2 ") and "12 of 12" in counts(found)
 
 
 def test_that_solvers_count_like_for_like_and_samples_of_the_bundled_prior_do_not() -> None:
     rows = {"cma-es": row(0.917, 0.938, 0.029), "swarm": row(0.88, 0.926, 0.033), "sample": row(0.99, 0.942)}
-    lines = list(beside_paper_section([suite("structured", rows)], [], None))
+    told = rows_beside_paper([suite("structured", rows)], [], None)
+    lines = list(beside_paper_section(told))
     cells = compared(*lines)
     assert [found[-1] == "yes" for found in list(cells.values())[1:]] == [True, True, False]
     # Behind within the paper's spread, behind by more, and ahead but of another kind.
-    assert lines[2].startswith("Like for like 0 of 2 ") and " 1 of 2 " in lines[2] and "1 of 3 " in lines[2]
+    assert counts(told).startswith("Like for like 0 of 2 ") and " 1 of 2 " in counts(told) and "1 of 3 " in counts(told)
     within, beyond = (line for line in lines if line.startswith("- "))
     assert "cma-es (structured)" in within and "spread" in within
     assert "swarm (structured)" in beyond and "spread" not in beyond
@@ -80,7 +81,7 @@ def test_that_reasons_come_from_how_a_network_was_trained() -> None:
         "paper": AT_BUDGET,
     }
     rows = {name: row(0.7, 0.84) for name in trained}
-    lines = list(beside_paper_section([], [suite("released", rows, trained)], None, falling={"cvae"}))
+    lines = list(beside_paper_section(rows_beside_paper([], [suite("released", rows, trained)], None, {"cvae"})))
     reasons = {line.partition(" ")[2].partition(" ")[0]: line for line in lines if line.startswith("- ")}
     assert all(part in reasons["cvae"] for part in ("3000 of 31250", "mixture", "16 x 16", "falls"))
     assert "16 x 16" not in reasons["fine"] and "falls" not in reasons["fine"]
@@ -107,8 +108,36 @@ def test_that_tables_of_several_runs_stand_in_one_report_with_a_dash_where_a_mea
     assert "| uniform sheet | | 75.2 | | - |" in older and older.startswith("; seed 0") and "earlier run" in older
     assert "| 2, generators | released | 7 | paper | 75.2 | 97.0 | 97.6 | 94.2 | +2.8 | yes |" in text
     assert "| 2, generators | sobol | 7 | cgan | 75.2 | 89.0 | - | 87.6 |" in text
-    opening = text.partition("\n## ")[0]
-    assert "*Uniform sheet*" in opening and "*As released*" in opening
+    first = text.split("\n\n")[1]
+    assert all(part in first for part in ("*Uniform sheet*", "*As released*", "Like for like 1 of 1 ", "2 of 2 are"))
+
+
+def test_that_calls_that_differ_in_nothing_but_rows_stand_in_one_table_and_the_later_row_counts(tmp_path: Path) -> None:
+    calls = {
+        "generators": {"paper": row(0.97, 0.942), "prior": row(0.99, None)},
+        "generators-more": {"paper": row(0.98, 0.942), "diffusion": row(0.95, 0.855)},
+        "generators-other": {"cgan": row(0.89, 0.876)},
+    }
+    for folder, rows in calls.items():
+        figures = suite("released", rows, dict.fromkeys(rows, AT_BUDGET))
+        figures["seeds"] = [0, 1] if folder == "generators-other" else [0]
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "generators.json").write_text(json.dumps(figures))
+    text = made_from(tmp_path).text
+    one, other = text.partition("Released, 7 targets; seed 0;")[2].partition("Released, 7 targets; seeds 0, 1;")[::2]
+    assert "Released, 7 targets" not in other
+    assert [line.split("|")[1].strip() for line in one.splitlines() if "**" in line] == ["paper", "prior", "diffusion"]
+    assert "**98.0**" in one and "**97.0**" not in text and "| cgan |" in other
+    assert "3 of 3" in text.split("\n\n")[1], "each row counts once"
+
+
+def test_that_runs_of_grpo_from_weights_that_are_no_longer_bundled_are_not_beside_the_paper() -> None:
+    runs = {start: {"accuracy": [row(0.95, 0.9491, calls=10_000)]} for start in ("bundled paper", "bundled prior")}
+    starts = {"bundled paper": "0" * 64, "bundled prior": digest_of("prior")}
+    training = {start: {"accuracy": {"family": "mixed", "start": digest}} for start, digest in starts.items()}
+    families = {"sobol": {"targets": 7, "uniform_siou": 0.8, "starts": runs}}
+    found = rows_beside_paper([], [], {"families": families, "training": training})
+    assert [one.name for one in found] == ["accuracy (from the bundled prior)"]
 
 
 def test_that_the_released_measure_gives_the_uniform_sheet_more_and_a_design_itself_all() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -85,6 +86,20 @@ def test_that_a_quick_report_has_every_table_with_numbers_that_hold(
     assert 0.5 < generators["sobol"]["uniform_siou"] < generators["sobol"]["uniform_siou_released"] < 1.0
     assert generators["sobol"]["rows"]["prior"]["siou_released"] > 0.9
     assert made_from(runs) == made_from(runs)
+
+
+@pytest.mark.torch
+def test_that_the_report_in_the_docs_is_that_of_its_runs_and_its_counts_stand_among_what_was_measured(
+    tmp_path: Path,
+) -> None:
+    docs = Path(__file__).parents[4] / "docs"
+    made_from(docs / "benchmark").save(tmp_path / "benchmark.md")
+    text = (tmp_path / "benchmark.md").read_text()
+    assert text == (docs / "benchmark.md").read_text()
+    first = text.split("\n\n")[1]
+    (measured,) = (line for line in (docs / "measured.md").read_text().splitlines() if "Tables 1 to 3" in line)
+    counts = re.findall(r"\d+ of \d+", first)
+    assert len(counts) == 3 and counts == re.findall(r"\d+ of \d+", measured)
 
 
 def test_that_rows_of_weights_that_are_no_longer_bundled_are_named() -> None:

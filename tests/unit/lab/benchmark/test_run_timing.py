@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kirigami_studio.lab.benchmark import speed_suite
-from kirigami_studio.lab.benchmark.speed_suite import run_timings
+from kirigami_studio.lab.benchmark.speed_suite import preview_timings, run_timings
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
@@ -25,3 +25,11 @@ def test_that_a_run_is_timed_from_its_start_to_its_first_design_and_its_end(monk
     assert isinstance(figures["processor_s"], float) and figures["processor_s"] > 0.0
     assert figures["iou_exact"] == result.best.score.iou_exact
     assert figures["panel_area_cv"] == result.best.score.evenness.area_cv
+
+
+def test_that_a_preview_is_timed_from_a_changed_target_to_its_first_design_and_to_its_end() -> None:
+    (figures,) = preview_timings(("hexagon",), changes=2).values()
+    first, refined = figures["first_processor_s"], figures["refined_processor_s"]
+    assert isinstance(first, float) and isinstance(refined, float) and 0.0 < first < refined
+    match, refined_match = figures["match"], figures["refined_match"]
+    assert isinstance(match, float) and isinstance(refined_match, float) and 0.97 < match <= refined_match + 0.005

@@ -16,6 +16,7 @@ from kirigami_studio.lab.baselines.cgan import Cgan
 from kirigami_studio.lab.baselines.conditional import FieldPixels
 from kirigami_studio.lab.baselines.cvae import Cvae
 from kirigami_studio.lab.baselines.stored import KINDS, load_generator
+from kirigami_studio.lab.training.corpus import TargetNoise
 from kirigami_studio.lab.training.dataset import generate_split
 from kirigami_studio.lab.training.train_baseline import (
     BaselineRun,
@@ -79,6 +80,16 @@ def test_that_a_run_visits_the_data_set_that_its_settings_name(tmp_path: Path) -
     assert caught.value.code == "training.other_start"
 
 
+def test_that_masks_of_still_targets_are_those_of_the_designs_as_they_lie(tmp_path: Path) -> None:
+    moving = BaselineRun(tiny("cgan"), tmp_path / "none", CPU)
+    still = BaselineRun(replace(tiny("cgan"), vertex_noise=0.0, turn_noise=0.0), tmp_path / "none", CPU)
+    seen = still.designs.at(9)
+    polygons = TargetNoise(0.0, 0.0).seen(moving.designs.at(9).polygons, torch.Generator())
+    assert torch.equal(seen.polygons, still.learner.network.pixels.masks(polygons))
+    assert torch.equal(seen.z, moving.designs.at(9).z)
+    assert still.advance()["loss"] != moving.advance()["loss"]
+
+
 def test_that_baselines_draw_into_as_many_pixels_as_the_field_has() -> None:
     pixels = FieldPixels(latent=10, mask=120)
     masks = torch.ones(2, 1, 10, 10)
@@ -93,11 +104,12 @@ def test_that_the_command_writes_weights_that_can_be_loaded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("kirigami_studio.lab.cli.learning.VALIDATION_COUNT", 4)
-    small = ("--steps", 2, "--latent", 8, "--channels", "4,8", "--batch", 8)
+    small = ("--steps", 2, "--latent", 8, "--channels", "4,8", "--batch", 8, "--still")
     record = answer(capsys, "train", "cgan", *small, "--out", tmp_path / "run", "--json")
     assert record["record"]["step"] == 2.0
     stored = load_generator(Path(record["files"][0]))
     assert stored.kind == "cgan" and stored.about["settings"]["first_moment"] == 0.5
+    assert stored.about["settings"]["turn_noise"] == stored.about["settings"]["vertex_noise"] == 0.0
     about = json.loads((tmp_path / "run" / "about.json").read_text())
     assert about["settings"] == stored.about["settings"]
     assert about["parameters"] == sum(weights.numel() for weights in stored.network.parameters())
