@@ -65,6 +65,10 @@ if TYPE_CHECKING:
 #: Candidates scored in one batch.
 SCORED_TOGETHER = 32
 
+#: Runs that also fit the uniform sheet draw no fewer samples than this, and keep the best: drawing and scoring a sample
+#: takes an eighth of the time of fitting it.
+LEAST_DRAWN = 32
+
 #: Candidates fitted one after the other and scored in one batch, which takes half of the time of one by one.
 FITTED_TOGETHER = 4
 
@@ -185,10 +189,9 @@ def run(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None 
     yield Progress(0, request.k, tr("Loading the generator"))
     with closing(work.guide()) as guided:
         next(guided, None)  # workers fit the uniform sheet while the generator samples
-        sheets, spare = samples(request)
-        yield from work.score(sheets)
+        yield from work.sample()
         yield from guided
-    yield from work.fill(spare)
+    yield from work.fill()
     work.evaluations += work.samples * decodings(request)
     if request.polish:
         yield from work.polish()
@@ -280,16 +283,25 @@ def best_of(request: Request, cancel: Callable[[], bool] = never, pool: Pool | N
 
 
 def sample(request: Request, model: Model | None = None) -> tuple[Sheet, ...]:
-    """Sample all designs that are not fitted from the uniform sheet, see :func:`samples`."""
-    return samples(request, model)[0]
+    """Sample all designs that are not fitted from the uniform sheet, see :func:`drawn`."""
+    return tuple(sheet for kind in drawn(request, model) for sheet in kind.sheets[: kind.kept])
 
 
-def samples(request: Request, model: Model | None = None) -> tuple[tuple[Sheet, ...], tuple[Sheet, ...]]:
+@dataclass(frozen=True, slots=True)
+class DrawnKind:
+    """Samples that keep one symmetry, or none."""
+
+    sheets: tuple[Sheet, ...]
+    kept: int  #: How many of them a run has a place for; others are to choose from
+
+
+def drawn(request: Request, model: Model | None = None, least: int = 0) -> list[DrawnKind]:
     """Sample the request's sheets; torch is imported here, on the first run, and not when the program starts.
 
-    They are all designs that are not fitted from the uniform sheet; with them come as many to spare as are.  Where the
-    target has symmetries that the grid can keep, samples that keep them come first: half of all, or all where a
-    symmetry is asked for.  ``model`` takes the place of the bundled variant that the request names.
+    There are ``k`` of them, or ``least`` if that is more: as many as are not fitted from the uniform sheet have a
+    place, the others are to choose from.  Where the target has symmetries that the grid can keep, samples that keep
+    them come first: half of all, or all where a symmetry is asked for.  ``model`` takes the place of the bundled
+    variant that the request names.
     """
     from kirigami_studio.generator.sampler import Near, sample_fields, sample_sheets
     from kirigami_studio.generator.weights import load_model
@@ -300,29 +312,46 @@ def samples(request: Request, model: Model | None = None) -> tuple[tuple[Sheet, 
     if request.near is not None:
         near = Near(request.near.field, rotation_of_target(request.near, request.silhouette, phi), request.nearness)
         fields = sample_fields(model, request.silhouette, grid, count, seed, steps, phi, near=near)
-        return tuple(on_sheet(request, field) for field in fields), ()
+        return [DrawnKind(tuple(on_sheet(request, field) for field in fields), count)]
     # The model knows no other start than the rectangle, and where mouths of that are.
     draw = (
         sample_sheets
         if model.moves_mouths and request.rim is RimRule.FREE and request.start.is_plain
         else sample_fields
     )
-    designs: list[Sheet | RatioField] = []
-    spare: list[Sheet | RatioField] = []
-    shares, of_all = symmetric_shares(request, count), symmetric_shares(request, request.k)
-    first = [share for _, share in shares] + [0] * (len(of_all) - len(shares))
-    for (pose, most), share in zip(of_all, first, strict=True):
-        target = fit_target(request, pose.symmetry)
-        drawn = draw(model, target, grid, most, seed, steps, phi, symmetry=pose.symmetry, upward=pose.angle)
-        designs += drawn[:share]
-        spare += drawn[share:]
-    if len(designs) < count:
-        most = request.k - sum(share for _, share in of_all)
-        drawn = draw(model, request.silhouette, grid, most, seed, steps, phi)
-        share = count - len(designs)
-        designs += drawn[:share]
-        spare += drawn[share:]
-    return tuple(on_sheet(request, one) for one in designs), tuple(on_sheet(request, one) for one in spare)
+    every = max(request.k, least)
+    shares, of_all = symmetric_shares(request, count), symmetric_shares(request, every)
+    kept = [share for _, share in shares] + [0] * (len(of_all) - len(shares))
+    kinds: list[tuple[int, int, SymmetricPose | None]] = [
+        (most, share, pose) for (pose, most), share in zip(of_all, kept, strict=True)
+    ]
+    if sum(kept) < count:
+        kinds.append((every - sum(most for _, most in of_all), count - sum(kept), None))
+    made = []
+    for most, share, pose in kinds:
+        target = request.silhouette if pose is None else fit_target(request, pose.symmetry)
+        symmetry, upward = (None, None) if pose is None else (pose.symmetry, pose.angle)
+        found = draw(model, target, grid, most, seed, steps, phi, symmetry=symmetry, upward=upward)
+        made.append(DrawnKind(tuple(on_sheet(request, one) for one in found), share))
+    return made
+
+
+def best_of_each(
+    kinds: Sequence[DrawnKind], found: Sequence[Candidate], ranking: Ranking
+) -> tuple[list[Candidate], list[Candidate]]:
+    """Divide scored samples into those that are kept and those to spare.
+
+    They come in the order in which they were drawn.  The best of each kind are kept, in that order.
+    """
+    best: list[Candidate] = []
+    spare: list[Candidate] = []
+    first = 0
+    for kind in kinds:
+        ranked = ranking.ranked(found[first : first + len(kind.sheets)])
+        best += sorted(ranked[: kind.kept], key=lambda one: one.index)
+        spare += ranked[kind.kept :]
+        first += len(kind.sheets)
+    return best, spare
 
 
 def fits_from_uniform(request: Request) -> list[GuidedTask]:
@@ -413,35 +442,40 @@ class _Work:
         self.request, self.watch, self.pool = request, watch, pool
         self.ranking = Ranking.of(request)
         self.found: list[Candidate] = []
+        self.spare: list[Candidate] = []
         self.samples = 0
         self.evaluations = 0
         self.hard = False
         self.cut_short = False
 
-    def score(self, sheets: Sequence[Sheet], numbers: Sequence[int] | None = None) -> Iterator[Event]:
-        """Score samples, which count up by default; the first batch whatever the budget."""
-        total = len(sheets)
-        numbers = range(total) if numbers is None else numbers
-        for start in range(0, total, SCORED_TOGETHER):
-            self.watch.check("run.stopped_scoring", start, total)
+    def sample(self) -> Iterator[Event]:
+        """Draw samples, score them, the first batch whatever the budget, and keep the best."""
+        kinds = drawn(self.request, least=LEAST_DRAWN if self.request.fitted_starts else 0)
+        sheets = [sheet for kind in kinds for sheet in kind.sheets]
+        found: list[Candidate] = []
+        for start in range(0, len(sheets), SCORED_TOGETHER):
+            self.watch.check("run.stopped_scoring", start, len(sheets))
             if start and self.watch.expired():
                 self.cut_short = True
-                return
-            batch = sheets[start : start + SCORED_TOGETHER]
-            for candidate, number in zip(scored(self.request, batch, 0), numbers[start:], strict=False):
-                self.found.append(replace(candidate, index=number))
-                self.samples += 1
-                self.evaluations += 1
-                yield CandidateFound(number, self.found[-1])
-            done = start + len(batch)
-            yield Progress(done, total, tr("Candidate {done} of {total}", done=done, total=total), Phase.SAMPLING)
+                break
+            found += scored(self.request, sheets[start : start + SCORED_TOGETHER], start)
+            words = tr("Candidate {done} of {total}", done=len(found), total=len(sheets))
+            yield Progress(len(found), len(sheets), words, Phase.SAMPLING)
+        self.samples = len(found)
+        self.evaluations += len(found)
+        chosen, self.spare = best_of_each(kinds, found, self.ranking)
+        yield from self._kept(chosen, range(len(chosen)))
 
-    def fill(self, spare: Sequence[Sheet]) -> Iterator[Event]:
-        """Score samples in the places of fits from the uniform sheet that were not needed."""
+    def fill(self) -> Iterator[Event]:
+        """Keep spare samples in the places of fits that were not needed."""
         known = {one.index for one in self.found}
-        numbers = [number for number in range(self.request.k) if number not in known]
-        if spare and not self.cut_short:
-            yield from self.score(spare[: len(numbers)], numbers)
+        if not self.cut_short:
+            yield from self._kept(self.spare, [number for number in range(self.request.k) if number not in known])
+
+    def _kept(self, candidates: Sequence[Candidate], numbers: Sequence[int]) -> Iterator[Event]:
+        for one, number in zip(candidates, numbers, strict=False):
+            self.found.append(replace(one, index=number))
+            yield CandidateFound(number, self.found[-1])
 
     def polish(self) -> Iterator[Event]:
         """Fit samples that differ: a few steps for all, then the rest for those that may win."""

@@ -62,12 +62,13 @@ FIRST_SHARE, LAST_SHARE = 3.0, 0.3
 class PolishTask:
     """Fit a candidate on the exact geometry, from where it is, by at most ``steps`` steps.
 
-    ``last`` says that no others follow.
+    ``last`` says that no others follow; they weigh even panels by ``last_share``.
     """
 
     candidate: Candidate
     steps: int
     last: bool = True
+    last_share: float = LAST_SHARE
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Fit as preferred, and more mildly where that gives away too much match."""
@@ -99,7 +100,7 @@ class PolishTask:
         if not even:
             return sparingly(FitPhase(self.steps, least_gain=CONVERGED))
         if self.last:
-            weights = {"even": LAST_SHARE * even, "junctions": junction_weight(even)}
+            weights = {"even": self.last_share * even, "junctions": junction_weight(even)}
             return sparingly(FitPhase(self.steps, LAST_TRUST, least_gain=CONVERGED, **weights))
         return sparingly(FitPhase(self.steps, FIRST_TRUST, FIRST_SHARE * even))
 

@@ -22,8 +22,8 @@ from kirigami_studio.lab.benchmark.generator_suite import bootstrap_interval
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import FIRST_ROUND, fits_from_uniform, sample, with_grid
-from kirigami_studio.pipeline.tasks import PolishTask, scored
+from kirigami_studio.pipeline.run import FIRST_ROUND, LEAST_DRAWN, best_of_each, drawn, fits_from_uniform, with_grid
+from kirigami_studio.pipeline.tasks import LAST_SHARE, PolishTask, scored
 
 #: The way that is no generator: fits from the uniform sheet, by stages of their own.
 GUIDED = "guided"
@@ -61,6 +61,8 @@ def measure_beginnings(
     polish: int = 15,
     seed: int = 0,
     report: Callable[[int, int], None] = lambda done, total: None,
+    least: int = LEAST_DRAWN,
+    last_share: float = LAST_SHARE,
     workers: Workers = HERE,
 ) -> dict[str, object]:
     """Measure each way on each target.
@@ -75,6 +77,10 @@ def measure_beginnings(
     polish : int
         Steps of the fit that samples get.
     seed : int
+    least : int
+        Samples that are drawn, the best of which are fitted; ``count`` if that is more.
+    last_share : float
+        Share of the even panels' weight in the last steps of the fit that samples get.  Guided fits have all of it.
 
     Returns
     -------
@@ -84,7 +90,7 @@ def measure_beginnings(
         ways, and ``shapes``, the same by target.
     """
     rows: dict[str, list[Begun]] = {way: [] for way in ways}
-    work = partial(begun, ways=tuple(ways), count=count, polish=polish, seed=seed)
+    work = partial(begun, ways=tuple(ways), count=count, polish=polish, seed=seed, least=least, last_share=last_share)
     for done, (_, found) in enumerate(ordered_results_of(work, iter(targets), workers)):
         for way, one in zip(ways, found, strict=True):
             rows[way].append(one)
@@ -92,14 +98,22 @@ def measure_beginnings(
     return {way: _figures(rows[way], rows.get(GUIDED) if way != GUIDED else None) for way in ways}
 
 
-def begun(target: Outline, ways: tuple[str, ...], count: int, polish: int, seed: int) -> list[Begun]:
+def begun(
+    target: Outline,
+    ways: tuple[str, ...],
+    count: int,
+    polish: int,
+    seed: int,
+    least: int = LEAST_DRAWN,
+    last_share: float = LAST_SHARE,
+) -> list[Begun]:
     """The best design of one target by each way."""
     request = with_grid(Request(target, None, k=4 * count, seed=seed, polish=polish, guided=count))
     models = {way: _model(way) for way in ways if way != GUIDED}  # loading takes no part in the figures
     found = []
     for way in ways:
         began = time.process_time()
-        designs = _guided(request) if way == GUIDED else _fitted(request, models[way], count)
+        designs = _guided(request) if way == GUIDED else _fitted(request, models[way], count, least, last_share)
         seconds = time.process_time() - began
         ranking = Ranking.of(request)
         best = ranking.ranked(designs)[0]
@@ -114,16 +128,18 @@ def _guided(request: Request) -> list[Candidate]:
     return [one for one in answers if one is not None]
 
 
-def _fitted(request: Request, model: Model, count: int) -> list[Candidate]:
-    """Samples of a model, each fitted as a run does it."""
+def _fitted(request: Request, model: Model, count: int, least: int, last_share: float) -> list[Candidate]:
+    """The best samples of a model, each fitted as a run does it."""
     asked = Request(request.target, request.grid, k=count, seed=request.seed, polish=request.polish, guided=0)
+    kinds = drawn(asked, model, least)
+    found = scored(asked, [sheet for kind in kinds for sheet in kind.sheets], 0)
     designs = []
-    for candidate in scored(asked, sample(asked, model), 0):
+    for candidate in best_of_each(kinds, found, Ranking.of(asked))[0]:
         first = min(FIRST_ROUND, asked.polish) if asked.polish >= 2 * FIRST_ROUND else 0
         now = candidate
         for steps, last in ((first, False), (asked.polish - first, True)):
             if steps:
-                now = PolishTask(now, steps, last).carry_out(asked, never).candidate or now
+                now = PolishTask(now, steps, last, last_share).carry_out(asked, never).candidate or now
         designs.append(now)
     return designs
 

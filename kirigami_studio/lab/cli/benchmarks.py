@@ -536,6 +536,8 @@ def beginnings(arguments: argparse.Namespace) -> int:
         arguments.polish,
         arguments.seed,
         _shown_on(line, "Targets"),
+        arguments.drawn,
+        arguments.last_share,
         workers(arguments),
     )
     return _print_figures(arguments, line, figures)

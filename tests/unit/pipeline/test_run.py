@@ -23,7 +23,16 @@ from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import USUAL, Ranking
 from kirigami_studio.pipeline.redesign import refitted, rescored
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import HARD_BELOW, best_of, decodings, run
+from kirigami_studio.pipeline.run import (
+    HARD_BELOW,
+    LEAST_DRAWN,
+    best_of,
+    best_of_each,
+    decodings,
+    drawn,
+    run,
+    sample,
+)
 from kirigami_studio.pipeline.tasks import GuidedTask, PolishTask, TaskResult, scored
 from kirigami_studio.polish import continuation
 from tests.refusals import refused
@@ -107,7 +116,7 @@ def test_that_an_infeasible_design_ranks_behind_a_worse_feasible_one(request_for
 def test_that_a_cancelled_run_stops_between_candidates(request_for_heart: Request) -> None:
     seen = []
     with refused(Cancelled, "run.stopped_scoring", done=32, total=40):
-        seen.extend(run(replace(request_for_heart, k=40), cancel=lambda: len(seen) >= 4))
+        seen.extend(run(replace(request_for_heart, k=40), cancel=lambda: len(seen) >= 3))
     assert not any(isinstance(event, Finished) for event in seen)
 
 
@@ -282,6 +291,23 @@ def guided_worths(monkeypatch: pytest.MonkeyPatch, worth: dict[int, float]) -> t
     assert numbers == list(range(32))
     guided = sorted(one.index for one in found if one.origin is Origin.GUIDED)
     return guided, [number for number in numbers if number not in guided]
+
+
+def test_that_the_best_of_more_samples_are_kept() -> None:
+    """Of each kind, in the order in which they were drawn."""
+    wish = Request(load("heart"), grid=(4, 5), k=8, polish=1)
+    kinds = drawn(wish, least=LEAST_DRAWN)
+    assert [(len(kind.sheets), kind.kept) for kind in kinds] == [(16, 3), (16, 3)]
+    assert sample(wish) == tuple(sheet for kind in kinds for sheet in kind.sheets[: kind.kept])
+    found = sorted(best_of(wish, pool=Pool(0)).candidates, key=lambda one: one.index)[:6]
+    sampled = [one.sampled_sheet or one.sheet for one in found]
+    mirrored, free = (scored(wish, kind.sheets, 0) for kind in kinds)
+    best = [USUAL.ranked(own)[:3] for own in (mirrored, free)]
+    assert sampled[:3] == [one.sheet for one in mirrored if one in best[0]] != [one.sheet for one in mirrored[:3]]
+    assert sampled[3:] == [one.sheet for one in free if one in best[1]] != [one.sheet for one in free[:3]]
+    chosen, spare = best_of_each(kinds, [*mirrored, *(replace(one, index=16 + one.index) for one in free)], USUAL)
+    assert len(chosen) == 6 and {one.index for one in (*chosen, *spare)} == set(range(32))
+    assert USUAL.worth(chosen[0]) > USUAL.worth(spare[0]) >= USUAL.worth(spare[1])
 
 
 def test_that_fits_from_the_uniform_sheet_end_when_the_best_two_agree(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -35,7 +35,7 @@ def test_that_more_steps_of_the_fit_and_more_beginnings_are_worth_more() -> None
     """The best of four fits ranks no lower than the first of them alone, which ranks above its sample."""
 
     def worth(count: int, polish: int) -> float:
-        (found,) = begun(load("drop"), ("prior",), count, polish, 0)
+        (found,) = begun(load("drop"), ("prior",), count, polish, 0, 1)
         assert found.seconds > 0.0 and found.grid == with_grid(Request(load("drop"), None)).grid
         return found.worth
 
@@ -45,11 +45,29 @@ def test_that_more_steps_of_the_fit_and_more_beginnings_are_worth_more() -> None
     assert worth(1, 0) < worth(1, 6) <= worth(2, 6) + 1e-9
 
 
+def test_that_the_best_of_more_samples_is_fitted() -> None:
+    few, many = (begun(load("letter-l"), ("prior",), 1, 0, 0, drawn)[0].worth for drawn in (1, 8))
+    assert few + 0.005 < many
+
+
 def test_that_each_way_has_its_figures_and_its_difference_to_the_guided_fits(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     ways = ["guided", "prior", f"{folder}/calm"]
-    words = ["benchmark", "beginnings", "--targets", "circle", "--ways", *ways, "--k", "1", "--polish", "2"]
+    words = [
+        "benchmark",
+        "beginnings",
+        "--targets",
+        "circle",
+        "--ways",
+        *ways,
+        "--k",
+        "1",
+        "--drawn",
+        "1",
+        "--polish",
+        "2",
+    ]
     assert main([*words, "--processes", "1", "--out", str(tmp_path / "figures.json"), "--json"]) == 0
     figures = json.loads(capsys.readouterr().out)
     assert figures == json.loads((tmp_path / "figures.json").read_text())
@@ -67,7 +85,7 @@ def test_that_variants_of_a_run_are_measured_by_their_preference(folder: Path) -
     request = Request(load("heart"), (6, 6), k=4, guided=0)
     drawn = [sample(request, load_model(name, folder)) for name in ("match", "calm")]
     assert drawn[0] != drawn[1]
-    figures = measure_beginnings([load("heart")], [f"{folder}/match", f"{folder}/calm"], 1, 0)
+    figures = measure_beginnings([load("heart")], [f"{folder}/match", f"{folder}/calm"], 1, 0, least=1)
     assert figures[f"{folder}/match"]["shapes"] != figures[f"{folder}/calm"]["shapes"]  # type: ignore[index]
 
 
