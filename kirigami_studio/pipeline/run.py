@@ -587,7 +587,8 @@ class _Work:
         """Fit the best that differ once more, with the last weights, by the steps that are left; for a hard shape by
         all.
         """
-        chosen, steps = worth_a_fit(self.found, self.ranking), self.request.polish
+        chosen: Sequence[Candidate] = worth_a_fit(self.found, self.ranking)
+        steps = self.request.polish
         if not self.hard:
             chosen = self._near_first(chosen, MAY_COME_FIRST)
             steps -= FIRST_ROUND + self._second_steps
