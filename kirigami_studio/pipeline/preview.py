@@ -1,4 +1,4 @@
-"""A first design of a target in a fraction of a second, then better ones: previews while a target is drawn.
+"""Previews while a target is drawn: a first design in a fraction of a second, then better ones.
 
 One short fit from the uniform sheet on the grid that a run is expected to take, then the first of those fits from the
 uniform sheet that a run begins with, one after the other in one worker process.  Nothing is sampled, scored, trimmed or
@@ -40,10 +40,9 @@ K, GUIDED = 32, 8
 
 
 def preview_request(request: Request) -> Request:
-    """What is previewed of a run: on its start or a rectangle, and on its grid or one as coarse as grids that are
-    chosen.
+    """The part of a request that its preview depends on, equal where previews are the same.
 
-    Equal for requests whose previews are the same.
+    It has the start of the run or a rectangle, and its grid or one as coarse as grids that are chosen.
 
     Raises
     ------
@@ -72,7 +71,7 @@ def preview_request(request: Request) -> Request:
 
 
 def lightened(target: Outline) -> Outline:
-    """A target of so many points that its figures would take seconds, without details that no sheet shows."""
+    """The target without details that no sheet shows, if it has very many points."""
     if len(target.points) <= MANY_POINTS:
         return target
     shape = target.polygon.simplify(DETAIL)
@@ -91,16 +90,16 @@ class Previewed:
 
 @dataclass(frozen=True, slots=True)
 class PreviewResult(TaskResult):
-    """What came of a :class:`PreviewTask`."""
+    """Result of a :class:`PreviewTask`."""
 
     previewed: Previewed | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class PreviewTask:
-    """A fit from the uniform sheet as a task of a run begins it, by other ``phases`` where there are some.
+    """A fit from the uniform sheet as a task of a run begins it.
 
-    Scoring it as a design would take as long as half of a short fit.
+    ``phases`` take the place of those of its way.  Scoring it as a design would take as long as half of a short fit.
     """
 
     beginning: GuidedTask
@@ -168,7 +167,7 @@ class _Fits:
         return found
 
     def done(self, request: Request, task: PreviewTask) -> Previewed:
-        """What comes of one fit."""
+        """The sheet of one fit."""
         usable = self._pool.usable
         ready = self._pool if usable and self._pool.ready else None
         if usable and ready is None:
