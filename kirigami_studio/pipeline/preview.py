@@ -1,4 +1,4 @@
-"""Previews while a target is drawn: a first design in a fraction of a second, then better ones.
+"""Previews while a target is drawn: a first design at once, then better ones.
 
 One short fit from the uniform sheet on the grid that a run is expected to take, then the first of those fits from the
 uniform sheet that a run begins with, one after the other in one worker process.  Nothing is sampled, scored, trimmed or
