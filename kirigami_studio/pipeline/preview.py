@@ -7,9 +7,10 @@ judged as cut, and no run depends on it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass, replace
+from typing import cast
 
 import shapely
 
@@ -74,7 +75,7 @@ def lightened(target: Outline) -> Outline:
     """The target without details that no sheet shows, if it has very many points."""
     if len(target.points) <= MANY_POINTS:
         return target
-    shape = target.polygon.simplify(DETAIL)
+    shape = cast(shapely.Polygon, target.polygon.simplify(DETAIL))
     rings = [shapely.get_coordinates(ring) for ring in (shape.exterior, *shape.interiors)]
     return Outline.from_points(rings[0], target.name, holes=rings[1:])
 
@@ -112,7 +113,7 @@ class PreviewTask:
         return PreviewResult(None, fit.evaluations + 1, previewed=Previewed(fit, match, worth))
 
 
-def preview(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Previewed]:
+def preview(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Generator[Previewed]:
     """A first design of a request, then better ones: each is worth more than the one before.
 
     They show the target with its holes filled, which a run cuts out of its best designs.
