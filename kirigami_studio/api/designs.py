@@ -333,9 +333,10 @@ def preview(
     phi: float = 0.0,
     refined: bool = False,
 ) -> Design:
-    """Fit one sheet to a target in a fraction of a second, as the window does while a target is drawn.
+    """Fit one sheet to a target in a fraction of a second.
 
-    It is no design of a run: nothing is sampled, compared or checked as cut, and holes stay closed.
+    The window does so while a target is drawn.  It is no design of a run: nothing is sampled, compared or checked as
+    cut, and holes stay closed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A first design of a target in a fraction of a second, then better ones: previews while a target is drawn.
+"""Previews while a target is drawn: a first design at once, then better ones.
 
 One short fit from the uniform sheet on the grid that a run is expected to take, then the first of those fits from the
 uniform sheet that a run begins with, one after the other in one worker process.  Nothing is sampled, scored, trimmed or
@@ -7,9 +7,10 @@ judged as cut, and no run depends on it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass, replace
+from typing import cast
 
 import shapely
 
@@ -40,10 +41,9 @@ K, GUIDED = 32, 8
 
 
 def preview_request(request: Request) -> Request:
-    """What is previewed of a run: on its start or a rectangle, and on its grid or one as coarse as grids that are
-    chosen.
+    """The part of a request that its preview depends on, equal where previews are the same.
 
-    Equal for requests whose previews are the same.
+    It has the start of the run or a rectangle, and its grid or one as coarse as grids that are chosen.
 
     Raises
     ------
@@ -72,10 +72,10 @@ def preview_request(request: Request) -> Request:
 
 
 def lightened(target: Outline) -> Outline:
-    """A target of so many points that its figures would take seconds, without details that no sheet shows."""
+    """The target without details that no sheet shows, if it has very many points."""
     if len(target.points) <= MANY_POINTS:
         return target
-    shape = target.polygon.simplify(DETAIL)
+    shape = cast(shapely.Polygon, target.polygon.simplify(DETAIL))
     rings = [shapely.get_coordinates(ring) for ring in (shape.exterior, *shape.interiors)]
     return Outline.from_points(rings[0], target.name, holes=rings[1:])
 
@@ -91,16 +91,16 @@ class Previewed:
 
 @dataclass(frozen=True, slots=True)
 class PreviewResult(TaskResult):
-    """What came of a :class:`PreviewTask`."""
+    """Result of a :class:`PreviewTask`."""
 
     previewed: Previewed | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class PreviewTask:
-    """A fit from the uniform sheet as a task of a run begins it, by other ``phases`` where there are some.
+    """A fit from the uniform sheet as a task of a run begins it.
 
-    Scoring it as a design would take as long as half of a short fit.
+    ``phases`` take the place of those of its way.  Scoring it as a design would take as long as half of a short fit.
     """
 
     beginning: GuidedTask
@@ -113,7 +113,7 @@ class PreviewTask:
         return PreviewResult(None, fit.evaluations + 1, previewed=Previewed(fit, match, worth))
 
 
-def preview(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Iterator[Previewed]:
+def preview(request: Request, cancel: Callable[[], bool] = never, pool: Pool | None = None) -> Generator[Previewed]:
     """A first design of a request, then better ones: each is worth more than the one before.
 
     They show the target with its holes filled, which a run cuts out of its best designs.
@@ -168,7 +168,7 @@ class _Fits:
         return found
 
     def done(self, request: Request, task: PreviewTask) -> Previewed:
-        """What comes of one fit."""
+        """The sheet of one fit."""
         usable = self._pool.usable
         ready = self._pool if usable and self._pool.ready else None
         if usable and ready is None:

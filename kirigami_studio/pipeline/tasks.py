@@ -193,7 +193,7 @@ class TrialTask:
 
 
 def match_and_worth(fit: Fit, request: Request) -> tuple[float, float]:
-    """Exact IoU of a sheet with the filled target in the pose of its fit, and that less the price of uneven panels."""
+    """Exact IoU with the filled target as fitted, and that less the price of uneven panels."""
     found = deploy(fit.sheet)
     match = exact_iou(fit.pose.apply(found.outline(request.phi)), request.silhouette)
     return match, match - EVENNESS * evenness(found).area_cv

@@ -283,7 +283,7 @@ def fit_from_uniform(
 
 
 def _phases(way: Way, even: float) -> tuple[FitPhase, ...]:
-    """What counts on a way, once the target itself is fitted."""
+    """Phases of a way, once the target itself is fitted."""
     match way:
         case Way.COOLED:
             return cooled(even)
@@ -554,7 +554,7 @@ def _rotations(grid: tuple[int, int], effort: int, start: StartShape) -> list[fl
 
 
 def coarser(grid: tuple[int, int], most: int = COARSE) -> tuple[int, int]:
-    """A grid of at most about so many voids each way, of the same parity and nearly the same aspect."""
+    """A grid of at most about ``most`` voids each way, of its parities and nearly its aspect."""
     share = most / max(grid)
     if share >= 1.0:
         return grid

@@ -29,7 +29,7 @@ class Preview:
 
 
 def preview_for(target: Outline, wanted: DesignSettings, cut: FabricationSettings) -> Request:
-    """What is previewed of the run that these settings ask for; equal where the previews are.
+    """The request to preview for these settings, equal where previews are the same.
 
     Raises
     ------
@@ -42,7 +42,9 @@ def preview_for(target: Outline, wanted: DesignSettings, cut: FabricationSetting
 
 
 def previewing(request: Request, cancel: Cancel) -> Iterator[Preview]:
-    """Report a first design of a request, then better ones, see :func:`kirigami_studio.pipeline.preview.preview`.
+    """Report a first design of a request, then better ones.
+
+    See :func:`kirigami_studio.pipeline.preview.preview`.
 
     Raises
     ------
@@ -58,7 +60,7 @@ def previewing(request: Request, cancel: Cancel) -> Iterator[Preview]:
 
 
 def preview_design(request: Request, cancel: Cancel = never, *, refined: bool = False) -> Preview:
-    """The first design of a request, or the best one that a preview comes to where ``refined``; raises as above."""
+    """The first design of a request, or the last and best where ``refined``; raises as above."""
     found = previewing(request, cancel)
     first = next(found)
     if not refined:

@@ -62,8 +62,8 @@ class Waiting:
         while not cancel():
             threading.Event().wait(0.001)
         self.stopped.append(request.target.name)
+        yield from ()
         raise Cancelled("run.no_result")
-        yield  # a generator
 
 
 def test_that_each_change_of_the_target_shows_a_preview_of_it_and_changes_nothing_else(

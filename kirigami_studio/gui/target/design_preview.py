@@ -1,4 +1,7 @@
-"""A preview of the design while the target changes: a quick fit in a thread of its own, the newest target's alone."""
+"""Previews of the design while the target changes.
+
+A quick fit in a thread of its own; the newest target alone counts.
+"""
 
 from __future__ import annotations
 
@@ -102,7 +105,7 @@ class DesignPreview(QObject):
             self._queue.close()
 
     def _wanted_now(self) -> Request | str | None:
-        """What is to be previewed, or why it cannot be; None for nothing."""
+        """The request to preview, or why there is none, one sentence; None for nothing."""
         document = self._session.document
         target = self._proposed or document.target
         designed = self._proposed is None and bool(document.candidates)

@@ -95,7 +95,7 @@ def paint_proposal(painter: QPainter, rings: ShapeRings, palette: Palette) -> No
 
 
 def paint_design_preview(painter: QPainter, panels: FloatArray, palette: Palette) -> None:
-    """Draw the panels (K, 4, 2), pixels, of a design that is only a preview: thin lines, nothing filled."""
+    """Draw the panels (K, 4, 2), pixels, of a preview: thin lines, nothing filled."""
     line = QColor(palette.accent)
     line.setAlpha(170)
     pen = round_pen(palette.accent, 0.8)

@@ -208,7 +208,7 @@ def _timed_run(request: Request, pool: Pool) -> dict[str, object]:
 
 
 def preview_timings(shapes: Sequence[str] = PREVIEWED, *, changes: int = CHANGES) -> dict[str, dict[str, object]]:
-    """Time previews of targets that change: each is turned a little, so that it is new to the program.
+    """Time previews of changing targets, each turned a little, so that it is new to the program.
 
     Parameters
     ----------
