@@ -102,8 +102,8 @@ SECOND_STEPS = 0.5
 SECOND_ROUND_SHOWN = 4
 
 #: Where the first design matches by less than this after the first round, the shape is hard: the whole better half goes
-#: on, by this multiple of the steps that are left, and designs are finished by as many steps as were asked for.
-HARD_BELOW, HARD_STEPS = 0.989, 2.0
+#: on, by twice the steps that are left and at most so many more, and designs are finished by as many as were asked for.
+HARD_BELOW, HARD_STEPS = 0.989, 10
 
 #: Fits from the uniform sheet end once the best two agree in worth within this.  Until then poses whose fits agree with
 #: the best are tried another way, and others are left behind.
@@ -502,8 +502,8 @@ class _Work:
     @property
     def _second_steps(self) -> int:
         """Steps of a second round."""
-        share = HARD_STEPS if self.hard else SECOND_STEPS
-        return math.ceil(share * (self.request.polish - FIRST_ROUND))
+        left = self.request.polish - FIRST_ROUND
+        return left + min(left, HARD_STEPS) if self.hard else math.ceil(SECOND_STEPS * left)
 
     def _is_hard(self) -> bool:
         """Whether the first design so far misses so much that further steps are worth their time."""

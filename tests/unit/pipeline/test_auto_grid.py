@@ -318,7 +318,8 @@ def test_that_the_predicted_grid_is_taken_where_all_short_fits_are_lost(monkeypa
 
 def test_that_trials_rank_the_grids_of_a_fir_as_whole_fits_do() -> None:
     # Whole runs end at an exact IoU of 0.984 on the second grid, and of 0.977 on the first.
-    wish, worth = Request(load("fir")), []
+    wish = Request(load("fir"))
+    worth: list[float] = []
     for grid in ((16, 13), (16, 15)):
         angle, kept = first_angles(wish.silhouette, grid)[1]
         worth.append(TrialTask(grid, angle, kept, auto_grid.TRIAL).carry_out(wish, lambda: False).worth)
