@@ -30,7 +30,7 @@ from kirigami_studio.outlines.starts import RECTANGLE, StartShape
 from kirigami_studio.outlines.symmetry import TOLERANCE
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import TrialTask
-from kirigami_studio.polish.continuation import first_angles
+from kirigami_studio.polish.continuation import first_angles, sparingly
 from kirigami_studio.polish.flat_sheet import uniform_sheet, width_in_cells
 from kirigami_studio.polish.objective import FitPhase
 from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_symmetries, symmetric_poses
@@ -440,10 +440,12 @@ def _worth(request: Request, grids: Sequence[_Candidate], trials: Trials) -> dic
     """What short fits on each grid reach, symmetric ones first: the best exact IoU, less the price of uneven panels."""
     target, setting, pinned = request.silhouette, request.symmetry, request.pinned
     poses = UPRIGHT_POSES if pinned else TRIED_POSES
+    # Corrected, those of pinned sheets no longer tell that a cross suits a square one and an arrow an upright one.
+    phases = sparingly(*TRIAL) if pinned else TRIAL
     tasks, owners = [], []
     for one in grids:
         for angle, kept in first_angles(target, one.grid, 1, setting, request.start, pinned=pinned)[:poses]:
-            tasks.append(TrialTask(one.grid, angle, kept, TRIAL))
+            tasks.append(TrialTask(one.grid, angle, kept, phases))
             owners.append(one)
     worth: dict[_Candidate, float] = {}
     for owner, reached in zip(owners, trials(request, tasks), strict=True):
