@@ -72,6 +72,7 @@ UPRIGHT_POSES, UPRIGHT_TRIED = 6, 3
 #: up to the third.  From a disk those of a bone are worth 0.42 on 7 x 7 and 0.83 on 5 x 9 voids, those of eleven other
 #: long shapes 0.77 or more on the predicted grid.
 LONG_TARGET, LOST, LONGER_CELLS, AS_MANY = 0.4, 0.6, 0.65, 0.75
+#: Phases of such a fit.
 TRIAL = (FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
 SMALLEST_SHARE = 0.25
