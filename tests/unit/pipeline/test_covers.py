@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from unittest.mock import Mock
 
 import pytest
 from shapely.geometry import Polygon
@@ -12,6 +13,7 @@ from kirigami_studio.cli.design import candidates_json, summary
 from kirigami_studio.evaluate.candidate import Candidate, Family, Origin
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.outlines.starts import no_closed_sheet_shows, start_shape
@@ -27,6 +29,7 @@ from kirigami_studio.pipeline.run import (
     best_of,
     may_be_closer,
     needs_cover,
+    varied_first,
 )
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.document import Document
@@ -205,3 +208,9 @@ def test_that_no_covers_are_tried_where_the_first_closed_design_shows_the_target
     assert not may_be_closer(heart.request, [shown, *others]) and may_be_closer(heart.request, [first, shown])
     for change in ({"covers": False}, {"polish": 5}, {"trim": True}):
         assert not may_be_closer(replace(heart.request, **change), [first])
+
+
+def test_that_the_first_of_each_symmetry_is_covered_before_others() -> None:
+    kept = (None, None, Symmetry.HALF_TURN, Symmetry.HALF_TURN, Symmetry.TWO_MIRRORS)
+    designs = [Mock(symmetry=symmetry) for symmetry in kept]
+    assert varied_first(designs) == [designs[place] for place in (0, 2, 4, 1, 3)]
