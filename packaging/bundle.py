@@ -293,6 +293,11 @@ def freeze() -> Path:
     places = ["--distpath", str(BUILD / "dist"), "--workpath", str(BUILD / "work")]
     # Not in the checkout: its package must not be taken for the installed one.
     subprocess.run([*command, *places, str(ROOT / "packaging" / "kirigami-studio.spec")], cwd=BUILD, check=True)
+    return frozen()
+
+
+def frozen() -> Path:
+    """What PyInstaller makes: a folder, or on macOS the application."""
     return BUILD / "dist" / ("Kirigami Studio.app" if sys.platform == "darwin" else "kirigami-studio")
 
 
@@ -403,7 +408,7 @@ def main() -> int:
     arguments = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
     if arguments.archive_only:
-        print(pack(BUILD / "dist" / "kirigami-studio", arguments.out))
+        print(pack(frozen(), arguments.out))
         return 0
     folder = freeze()
     if sys.platform.startswith("linux"):

@@ -325,6 +325,10 @@ def design(
     return Designs(document_of(result, fabrication), result)
 
 
+design.__signature__ = explicit_signature(design, keywords_of(*SEARCH))  # type: ignore[attr-defined]
+design.__doc__ = explicit_docstring(design, *SEARCH)
+
+
 def preview(
     target: TargetLike,
     *,
@@ -356,10 +360,6 @@ def preview(
     wanted = chosen_settings(_grid(grid), {"phi": number("phi", phi)}, start=_start(start, {}))
     found = preview_design(preview_for(outline, wanted, FabricationSettings()), refined=refined)
     return Sheet(found.design.deployment).for_target(outline, phi=phi)
-
-
-design.__signature__ = explicit_signature(design, keywords_of(*SEARCH))  # type: ignore[attr-defined]
-design.__doc__ = explicit_docstring(design, *SEARCH)
 
 
 def _grid(grid: object) -> tuple[int, int] | None:

@@ -147,7 +147,10 @@ class Pool:
 
     @property
     def ready(self) -> bool:
-        """Whether a worker can begin at once; not while the pool serves another run."""
+        """Whether a worker can begin at once; not while the pool serves another run.
+
+        It waits for a run that was just stopped, at most :data:`HANDOVER`.
+        """
         if not self._taken.acquire(timeout=HANDOVER):
             return False
         try:

@@ -129,7 +129,7 @@ def test_that_what_a_slider_would_make_of_the_target_is_previewed(
     assert seen[-1] is None
     until(lambda: seen[-1] is not None)
     round_ = seen[-1]
-    reshaping.previewed.emit(None)
+    reshaping.proposed.emit(None)
     until(lambda: seen[-1] is not None)
     assert sharp is not None and round_ is not None and round_.match > sharp.match + 0.01
 

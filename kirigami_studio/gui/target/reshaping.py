@@ -23,7 +23,7 @@ class TargetReshaper(QObject):
 
     edited = Signal(Edit)
     refused = Signal(KirigamiError)
-    previewed = Signal(object)  #: Placed, or None
+    proposed = Signal(object)  #: Placed, or None
     restarted = Signal()  #: the sliders stand for another target now
 
     def __init__(self, context: SketchContext, session: Session, parent: QObject) -> None:
@@ -63,16 +63,16 @@ class TargetReshaper(QObject):
         changed = document if same else without_designs(document, target.outline)
         return Edit(change.gesture, replace(changed, target=target.outline, drawing=objects), change.merge_key)
 
-    def preview(self, kind: str, strength: float) -> None:
+    def propose(self, kind: str, strength: float) -> None:
         """Show what simplifying or smoothing (0..1) would make of the target."""
         made = self._refined(kind, strength)
         if made is not None:
-            self.previewed.emit(made)
+            self.proposed.emit(made)
 
     def refine(self, kind: str, strength: float) -> None:
         """Simplify or smooth the target that the slider started from."""
         made = self._refined(kind, strength)
-        self.previewed.emit(None)
+        self.proposed.emit(None)
         placed = self._context.active
         if made is not None and (placed is None or made.outline != placed.outline):
             self._result = made

@@ -288,7 +288,7 @@ class TargetPanel(Card):
 
     def show_preview(self, preview: Preview | None) -> None:
         """Show a quick fit over the target, or none."""
-        self.view.show_design(None if preview is None else preview.design)
+        self.view.show_preview(None if preview is None else preview.design)
         if preview is None:
             self.preview.setText("")
             self.preview.setToolTip("")
@@ -349,7 +349,7 @@ def measured(outline: Outline) -> str:
 class RefineBar(QWidget):
     """Two sliders with a live preview, two lengths in mm."""
 
-    previewed = Signal(str, float)  #: name of the slider, strength 0..1
+    proposed = Signal(str, float)  #: name of the slider, strength 0..1
     refined = Signal(str, float)
     size_wanted = Signal(float, float)  #: width and height, mm
 
@@ -420,7 +420,7 @@ class RefineBar(QWidget):
                 with QSignalBlocker(own):
                     own.setValue(0)
         if self.sliders[name].isSliderDown():
-            self.previewed.emit(name, value / REFINE_STEPS)
+            self.proposed.emit(name, value / REFINE_STEPS)
         else:
             self.refined.emit(name, value / REFINE_STEPS)
 

@@ -93,17 +93,17 @@ class TargetPresenter(QObject):
         panel.view.context.guides_changed.connect(self._take_guides)
         panel.view.hint.connect(self._show_hint)
         panel.tools.mirror_wanted.connect(reshaping.mirror)
-        panel.refine.previewed.connect(reshaping.preview)
+        panel.refine.proposed.connect(reshaping.propose)
         panel.refine.refined.connect(reshaping.refine)
         panel.refine.size_wanted.connect(reshaping.resize)
         reshaping.edited.connect(self._targeting.reshape)
         reshaping.edited.connect(self._drop_errors)
         reshaping.refused.connect(self._refuse)
-        reshaping.previewed.connect(panel.view.show_preview)
+        reshaping.proposed.connect(panel.view.show_proposal)
         reshaping.restarted.connect(panel.refine.restart)
 
     def _connect_preview(self, preview: DesignPreview) -> None:
-        self.reshaping.previewed.connect(preview.propose)
+        self.reshaping.proposed.connect(preview.propose)
         preview.found.connect(self._panel.show_preview)
         preview.refused.connect(self._panel.show_no_preview)
 

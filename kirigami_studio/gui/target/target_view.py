@@ -89,8 +89,8 @@ class TargetView(Canvas):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.outline: Outline | None = None
-        self._preview: Placed | None = None
-        self._design: PosedDesign | None = None
+        self._proposal: Placed | None = None
+        self._preview: PosedDesign | None = None
         self.reach: Reach | None = None
         self.underlay: Underlay | None = None
         self._editing = False
@@ -142,7 +142,7 @@ class TargetView(Canvas):
                 under = under.laid_under(drawn, traced)
         elif drawn is None:
             under = None
-        self.outline, self._preview, self.reach = outline, None, None
+        self.outline, self._proposal, self.reach = outline, None, None
         target = drawn or (None if outline is None else Placed.on_board(outline))
         alone = () if target is None else (target,)
         self.context.show(target, tuple(map(self._placed, objects)) if len(objects) > 1 else alone)
@@ -171,14 +171,14 @@ class TargetView(Canvas):
         self.reach = reach
         self.update()
 
-    def show_preview(self, placed: Placed | None) -> None:
+    def show_proposal(self, placed: Placed | None) -> None:
         """Show what the target would become, or stop doing so."""
-        self._preview = placed
+        self._proposal = placed
         self.update()
 
-    def show_design(self, design: PosedDesign | None) -> None:
+    def show_preview(self, design: PosedDesign | None) -> None:
         """Show a quick fit to the target, or to what it would become, over it; or none."""
-        self._design = design
+        self._preview = design
         self.update()
 
     def set_tool(self, tool: Tool) -> None:
@@ -270,19 +270,19 @@ class TargetView(Canvas):
             else:
                 self.paint_outline(painter, transform.rings_to_pixels(self.context.placed.rings))
             self._paint_reach(painter, transform, self.context.placed)
-        if self._preview is not None:
-            paint_proposal(painter, transform.rings_to_pixels(self._preview.rings), self.palette_)
+        if self._proposal is not None:
+            paint_proposal(painter, transform.rings_to_pixels(self._proposal.rings), self.palette_)
         if self._editing:
-            self._paint_design(painter, transform, self._preview or self.context.placed)
+            self._paint_preview(painter, transform, self._proposal or self.context.placed)
             paint_axes(painter, transform, self.context.mirror, QRectF(self.rect()), self.palette_)
         self.active.paint(painter, transform, self.palette_)
 
-    def _paint_design(self, painter: QPainter, transform: ViewTransform, placed: Placed | None) -> None:
+    def _paint_preview(self, painter: QPainter, transform: ViewTransform, placed: Placed | None) -> None:
         """Draw the preview of a design over the shape that it is fitted to."""
-        if self._design is None or placed is None:
+        if self._preview is None or placed is None:
             return
-        nodes = transform.to_pixels(self._design.nodes(self._design.phi_target) * placed.scale + placed.centre)
-        paint_design_preview(painter, self._design.panels(nodes), self.palette_)
+        nodes = transform.to_pixels(self._preview.nodes(self._preview.phi_target) * placed.scale + placed.centre)
+        paint_design_preview(painter, self._preview.panels(nodes), self.palette_)
         paint_target_line(painter, transform.rings_to_pixels(placed.rings), self.palette_)
 
     def paint_outline(self, painter: QPainter, rings: tuple[FloatArray, ...]) -> None:
@@ -304,7 +304,7 @@ class TargetView(Canvas):
         self.update()
 
     def _paint_reach(self, painter: QPainter, transform: ViewTransform, placed: Placed) -> None:
-        if self.reach is None or self._preview is not None:
+        if self.reach is None or self._proposal is not None:
             return
         undercuts = (self.reach.undercut,) if self.reach.turns_back else ()
         arms, notches = (

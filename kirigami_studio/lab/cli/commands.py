@@ -355,7 +355,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         samples(4),
         option("--drawn", type=whole, default=32, help="samples drawn, of which the best are fitted (default 32)"),
         option("--polish", type=whole, default=15, help="polishing steps (default 15)"),
-        option("--last-share", type=float, default=0.3, metavar="SHARE",
+        option("--last-share", type=amount, default=0.3, metavar="SHARE",
                help="share of the even panels' weight in the last steps of samples; guided fits have 1 (default 0.3)"),
         SEED, *WORKERS, *FIGURES,
     ), ("kirigami-studio benchmark beginnings --targets tests/data/dev_shapes",

@@ -96,3 +96,10 @@ def test_that_samples_have_a_free_rim_where_the_request_and_the_model_do(
     request = Request(load("heart"), (6, 6), k=2, guided=0, rim=rim)
     assert all(sheet.has_even_rim is not start_free for sheet in sample(request, load_model("match", folder)))
     assert all(sheet.has_even_rim for sheet in sample(request, load_model("prior")))
+
+
+@pytest.mark.parametrize("share", ["nan", "-1", "much"])
+def test_that_a_share_that_is_none_is_refused(share: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["benchmark", "beginnings", "--targets", "circle", "--last-share", share])
+    assert ended.value.code == 2 and "--last-share" in capsys.readouterr().err
