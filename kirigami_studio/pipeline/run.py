@@ -66,7 +66,7 @@ if TYPE_CHECKING:
 SCORED_TOGETHER = 32
 
 #: Runs that also fit the uniform sheet draw no fewer samples than this, and keep the best: drawing and scoring a sample
-#: takes an eighth of the time of fitting it.
+#: takes an eighth of the time of fitting it.  Not of pinned sheets: what a sample matches says little about its pieces.
 LEAST_DRAWN = 32
 
 #: Candidates fitted one after the other and scored in one batch, which takes half of the time of one by one.
@@ -103,6 +103,7 @@ SECOND_ROUND_SHOWN = 4
 
 #: Where the first design matches by less than this after the first round, the shape is hard: the whole better half goes
 #: on, by twice the steps that are left and at most so many more, and designs are finished by as many as were asked for.
+#: Not of pinned sheets: pieces of a crescent and of a letter T match worse for it.
 HARD_BELOW, HARD_STEPS = 0.989, 10
 
 #: Fits from the uniform sheet end once the best two agree in worth within this.  Until then poses whose fits agree with
@@ -462,7 +463,8 @@ class _Work:
 
     def sample(self) -> Iterator[Event]:
         """Draw samples, score them, the first batch whatever the budget, and keep the best."""
-        kinds = drawn(self.request, least=LEAST_DRAWN if self.request.fitted_starts else 0)
+        chosen_from = self.request.fitted_starts and not self.request.pinned
+        kinds = drawn(self.request, least=LEAST_DRAWN if chosen_from else 0)
         sheets = [sheet for kind in kinds for sheet in kind.sheets]
         found: list[Candidate] = []
         for start in range(0, len(sheets), SCORED_TOGETHER):
@@ -520,7 +522,7 @@ class _Work:
     def _is_hard(self) -> bool:
         """Whether the first design so far misses so much that further steps are worth their time."""
         first = min(self.found, key=self.ranking.key, default=None)
-        return first is not None and first.score.iou_exact < HARD_BELOW
+        return first is not None and not self.request.pinned and first.score.iou_exact < HARD_BELOW
 
     def _near_first(self, candidates: Iterable[Candidate], lacking: float) -> list[Candidate]:
         """Those candidates that lack no more worth than this of the first design so far."""

@@ -80,7 +80,7 @@ def test_that_each_change_of_the_target_shows_a_preview_of_it_and_changes_nothin
         assert panel.preview.text() == f"Preview: match {100.0 * found.match:.1f} %"
         assert board.session.document is document and not document.candidates
         shown = board.target.view.grab().toImage()
-        panel.view.show_design(None)
+        panel.view.show_preview(None)
         assert board.target.view.grab().toImage() != shown
     board.commands["undo"].trigger()
     until(lambda: seen[-1] is not None)
@@ -125,7 +125,7 @@ def test_that_what_a_slider_would_make_of_the_target_is_previewed(
     set_target(board, load("star"))
     until(lambda: seen[-1] is not None)
     sharp = seen[-1]
-    reshaping.preview("smooth", 1.0)
+    reshaping.propose("smooth", 1.0)
     assert seen[-1] is None
     until(lambda: seen[-1] is not None)
     round_ = seen[-1]

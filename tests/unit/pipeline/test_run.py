@@ -6,6 +6,7 @@ import math
 import pickle
 from collections import Counter
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -291,6 +292,22 @@ def guided_worths(monkeypatch: pytest.MonkeyPatch, worth: dict[int, float]) -> t
     assert numbers == list(range(32))
     guided = sorted(one.index for one in found if one.origin is Origin.GUIDED)
     return guided, [number for number in numbers if number not in guided]
+
+
+def test_that_pinned_sheets_get_no_more_steps_and_samples(
+    steps_asked: Counter[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counts: list[int] = []
+
+    def counted(*given: Any, **more: Any) -> Any:
+        kinds = drawn(*given, **more)
+        counts.append(sum(len(kind.sheets) for kind in kinds))
+        return kinds
+
+    monkeypatch.setattr("kirigami_studio.pipeline.run.drawn", counted)
+    wish = Request(load("star"), grid=(4, 5), k=4, seed=3, polish=12, covers=False, width_mm=240.0, least_gap_mm=9.0)
+    assert best_of(wish, pool=Pool(0)).best.score.iou_exact < HARD_BELOW
+    assert max(steps_asked.values()) <= 12 and counts == [4]
 
 
 def test_that_the_best_of_more_samples_are_kept() -> None:
