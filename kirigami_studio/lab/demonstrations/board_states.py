@@ -104,7 +104,7 @@ class BoardStates(OffscreenSession):
             target.tools.set_mode(Combine.ADD)
             self.all_sizes(f"editor-{tool.value}")
         target.tools.set_mode(Combine.NEW)
-        reshaping.preview("smooth", 0.8)
+        reshaping.propose("smooth", 0.8)
         self.all_sizes("editor-smoothing")
         target.view.show_preview(None)
 
