@@ -106,7 +106,7 @@ class BoardStates(OffscreenSession):
         target.tools.set_mode(Combine.NEW)
         reshaping.propose("smooth", 0.8)
         self.all_sizes("editor-smoothing")
-        target.view.show_preview(None)
+        target.view.show_proposal(None)
 
     def objects(self) -> None:
         """Several objects, two of them selected, and one that hangs apart."""
