@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 
 # Before numpy, torch or Qt are loaded anywhere.
@@ -70,18 +71,32 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
         terminalreporter.write_line(f"tests of {budget:.0f} processor seconds; make test-all plays them all")
 
 
+@pytest.fixture(scope="session")
+def own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """New empty folders.  To number one of its own, pytest reads the names of all that any test has made."""
+    within = tmp_path_factory.mktemp("own")
+
+    def made() -> Iterator[Path]:
+        for number in count():
+            folder = within / str(number)
+            folder.mkdir()
+            yield folder
+
+    return made()
+
+
 @pytest.fixture(autouse=True)
-def own_materials(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+def own_materials(own_folders: Iterator[Path], monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder of own materials, so that no test sees or touches those of whoever runs it."""
-    folder = tmp_path_factory.mktemp("materials")
+    folder = next(own_folders)
     monkeypatch.setenv("KIRIGAMI_STUDIO_MATERIALS", str(folder))
     return folder
 
 
 @pytest.fixture(autouse=True)
-def own_machines(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+def own_machines(own_folders: Iterator[Path], monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder of own machines, too."""
-    folder = tmp_path_factory.mktemp("machines")
+    folder = next(own_folders)
     monkeypatch.setenv("KIRIGAMI_STUDIO_MACHINES", str(folder))
     return folder
 

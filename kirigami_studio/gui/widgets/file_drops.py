@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QMimeData, QObject, Signal
-from PySide6.QtGui import QDropEvent
+from PySide6.QtGui import QDragLeaveEvent, QDropEvent
 from PySide6.QtWidgets import QWidget
 
 
@@ -27,11 +27,10 @@ class FileDrops(QObject):
         widget.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        kind = event.type()
-        if kind not in (QEvent.Type.DragEnter, QEvent.Type.DragLeave, QEvent.Type.Drop):
-            return super().eventFilter(watched, event)
+        if not isinstance(event, (QDropEvent, QDragLeaveEvent)) or event.type() == QEvent.Type.DragMove:
+            return False
         taken = isinstance(event, QDropEvent) and self._takes(event)  # Qt's events of entering are of its kind
-        self.here = taken and kind == QEvent.Type.DragEnter
+        self.here = taken and event.type() == QEvent.Type.DragEnter
         self._widget.update()
         return taken
 

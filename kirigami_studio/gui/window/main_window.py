@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QByteArray, QEvent, QObject, QPoint, QRect, QSettings, QSize, Qt
-from PySide6.QtGui import QCloseEvent, QIcon, QKeyEvent, QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QAbstractSpinBox, QLabel, QMainWindow, QSizePolicy, QWidget
+from PySide6.QtCore import QByteArray, QPoint, QRect, QSettings, QSize, Qt
+from PySide6.QtGui import QCloseEvent, QIcon, QResizeEvent, QShowEvent
+from PySide6.QtWidgets import QLabel, QMainWindow, QSizePolicy, QWidget
 
 from kirigami_studio.foundation.resources import resource
 from kirigami_studio.foundation.words import tr
@@ -76,16 +76,10 @@ class MainWindow(QMainWindow):
         self.fabrication, self.cuts = pages.fabrication, pages.cuts
         self.setCentralWidget(pages)
         self._build_status()
-        leave_wheel(self)
         name_roles()
-        BriefTooltips(self)
-        for box in self.findChildren(QAbstractSpinBox):
-            box.installEventFilter(self)
         ask = file_dialogs or SystemFileDialogs(self)
         self.unsaved = UnsavedWork(self, session, project, services.hand, ask)
         self.files = FileCommands(services, self.unsaved, ask, self.fabrication.exports, self)
-        self.drops = FileDrops(self)
-        self.drops.file_dropped.connect(self.files.open)
         self.appearance = Appearance(self, session, services.preferences, palette, self.start_again)
         self.dialogs = Dialogs(
             self,
@@ -119,6 +113,11 @@ class MainWindow(QMainWindow):
         self.welcome.offer(self.commands.actions)
         self.appearance.changed.connect(self.commands.set_palette)
         self.appearance.set_theme(palette)
+        # Last: they look at every event of what they are put on, and most come while a window is put together.
+        leave_wheel(self)
+        BriefTooltips(self)
+        self.drops = FileDrops(self)
+        self.drops.file_dropped.connect(self.files.open)
 
     def _build_status(self) -> None:
         self.status_text = ElidedLabel(Qt.TextElideMode.ElideRight)
@@ -262,14 +261,6 @@ class MainWindow(QMainWindow):
         super().resizeEvent(event)
         self.pages.share_width(self.width())
         self._place_messages()
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        """Number fields leave Space to the window, which plays the deployment."""
-        asked = event.type() == QEvent.Type.ShortcutOverride
-        if asked and isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Space:
-            event.ignore()
-            return True
-        return super().eventFilter(watched, event)
 
     def _show_unit(self) -> None:
         """Write all lengths in the unit that was switched to."""
