@@ -102,7 +102,7 @@ class Shelf(Generic[Item]):
         return Contents(items, frozenset(own), tuple(faults))
 
     def find(self, name: str) -> Item:
-        """Return the value with this key, or else with this full name, in any case.
+        """Return the value with this key, or else with this key or full name in any case.
 
         Raises
         ------
@@ -110,7 +110,9 @@ class Shelf(Generic[Item]):
             None of that name; the sentence lists the known keys.
         """
         known = self.contents().items
-        wanted = str(name).strip().casefold()
+        if (exact := str(name)) in known:
+            return known[exact]
+        wanted = exact.strip().casefold()
         by_key = {key.casefold(): item for key, item in known.items()}
         by_name = {item.name.casefold(): item for item in list(known.values())[::-1]}
         found = by_key.get(wanted) or by_name.get(wanted)

@@ -252,12 +252,12 @@ def test_that_tooltips_of_controls_are_two_short_lines(designed: MainWindow) -> 
         noted = control.objectName() in ("machine", "material")
         lines = wrapped(control.toolTip(), BRIEF if noted else None).split("\n")
         assert len(lines) <= 2 and max(map(len, lines)) <= TOOLTIP_LINE + 2, control.objectName()
-    control = designed.settings.auto
-    control.setToolTip("word " * 200)
-    event = QHelpEvent(QEvent.Type.ToolTip, QPoint(4, 4), control.mapToGlobal(QPoint(4, 4)))
-    QApplication.sendEvent(control, event)
-    assert 0 < max(map(len, QToolTip.text().split("\n"))) <= TOOLTIP_LINE
-    QToolTip.hideText()
+    for control in (designed.settings.auto, designed.page_buttons[WindowPage.MAKE]):
+        control.setToolTip("word " * 200)
+        event = QHelpEvent(QEvent.Type.ToolTip, QPoint(4, 4), control.mapToGlobal(QPoint(4, 4)))
+        QApplication.sendEvent(control, event)
+        assert 0 < max(map(len, QToolTip.text().split("\n"))) <= TOOLTIP_LINE
+        QToolTip.hideText()
 
 
 def test_that_no_menu_is_higher_than_a_small_screen(designed: MainWindow) -> None:

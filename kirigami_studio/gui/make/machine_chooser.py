@@ -97,10 +97,11 @@ class MachineChooser(QObject):
         offered = dict(self._library) if machine is None else cuttable(machine)
         listed = sorted(offered.items(), key=_shown_name)
         if [self.material.itemData(row) for row in range(self.material.count())] != [key for key, _ in listed]:
+            usual = FabricationSettings()
             with QSignalBlocker(self.material):
                 self.material.clear()
                 for row, (key, material) in enumerate(listed):
-                    note = note_on(material, FabricationSettings())
+                    note = note_on(material, usual)
                     self.material.addItem(tr(material.name), key)
                     self.material.setItemData(row, None if note is None else note.text, Qt.ItemDataRole.ToolTipRole)
         return offered

@@ -118,6 +118,12 @@ def test_that_a_material_is_found_by_key_or_full_name_in_any_case() -> None:
     assert find_material(default_material().name.upper()) == default_material()
 
 
+def test_that_the_very_key_comes_before_one_in_other_letters(own_materials: Path) -> None:
+    text = resource("materials", "card-co2.toml").read_text(encoding="utf-8")
+    (own_materials / "PET-CO2.toml").write_text(text, encoding="utf-8")
+    assert find_material("pet-co2") == presets()["pet-co2"] and find_material("PET-CO2").key == "PET-CO2"
+
+
 def test_that_an_unknown_material_is_refused_with_the_known_ones() -> None:
     with pytest.raises(FabricationError, match=r"'oak'.*film-uv.*pet-co2"):
         find_material("oak")
