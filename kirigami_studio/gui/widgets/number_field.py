@@ -59,8 +59,9 @@ class FieldHabits(WheelStays):
     """Also leaves keys of the window to it: undo unless something was typed, export, and Space, which plays."""
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802 - Qt's name
-        pressed = isinstance(event, QKeyEvent) and isinstance(watched, QAbstractSpinBox)
-        if pressed and event.type() == QEvent.Type.ShortcutOverride:
+        if not isinstance(event, QKeyEvent) or not isinstance(watched, QAbstractSpinBox):
+            return super().eventFilter(watched, event)
+        if event.type() == QEvent.Type.ShortcutOverride:
             typing = watched.lineEdit().isModified() and event.key() != Qt.Key.Key_E
             ctrl = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
             if event.key() == Qt.Key.Key_Space or (ctrl and event.key() in WINDOW_KEYS and not typing):
