@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
-import numpy.typing as npt
 import shapely
 from scipy.spatial import cKDTree
 from shapely.geometry import LineString, Polygon
@@ -204,22 +203,12 @@ def distances(one: BaseGeometry, other: BaseGeometry) -> FloatArray:
     if not len(corners) or not len(others):
         return np.full(len(corners), math.inf)
     near = np.asarray(cKDTree(others).query(corners)[0])
-    # From corner to corner is quick, and nearly always near enough; of the others most lie in the shape.
+    # From corner to corner is quick, and nearly always near enough.
     far = np.flatnonzero(near > SHARP_MM)
     if len(far):
         shapely.prepare(other)
-        outside = far[~shapely.intersects_xy(other, *corners[far].T)]
-        near[far] = 0.0
-        if len(outside):
-            points, sides = shapely.points(corners[outside]), shapely.STRtree(_sides(other))
-            near[outside] = sides.query_nearest(points, return_distance=True, all_matches=False)[1]
+        near[far] = shapely.distance(other, shapely.points(corners[far]))
     return near
-
-
-def _sides(shape: BaseGeometry) -> npt.NDArray[np.object_]:
-    """The sides of all rings of a shape."""
-    found, ring = shapely.get_coordinates(shapely.get_rings(shapely.get_parts(shape)), return_index=True)
-    return np.asarray(shapely.linestrings(np.stack([found[:-1], found[1:]], axis=1)[ring[:-1] == ring[1:]]))
 
 
 def bed_name(layer: int, number: int) -> str:

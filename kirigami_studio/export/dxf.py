@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from io import StringIO
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from ezdxf import units, zoom
@@ -152,6 +153,23 @@ def _sort_classes(document: Drawing) -> None:
     section.classes = dict(sorted(section.classes.items()))
 
 
+class _Text(str):
+    """Tags that are written as they stand."""
+
+    def dxfstr(self) -> str:
+        return self
+
+
+class _Corners(LWPolylinePoints):
+    """Corners of a line without width, written in one go: ezdxf makes objects of each corner and each number."""
+
+    def dxftags(self) -> Iterator[Any]:
+        rows = (
+            f" 10\n{x}\n 20\n{y}\n 42\n{bulge}\n" if bulge else f" 10\n{x}\n 20\n{y}\n" for x, y, _, _, bulge in self
+        )
+        yield _Text("".join(rows))
+
+
 def _draw(document: Drawing, strokes: Sequence[Stroke], version: str) -> None:
     modelspace = document.modelspace()
     for stroke in strokes:
@@ -170,7 +188,7 @@ def _draw(document: Drawing, strokes: Sequence[Stroke], version: str) -> None:
             modelspace.add_polyline2d(rows, format=form, close=stroke.closed, dxfattribs=attributes)
         else:
             line = modelspace.add_lwpolyline((), close=stroke.closed, dxfattribs=attributes)
-            line.lwpoints = LWPolylinePoints(table.tolist())  # one by one takes ten times as long
+            line.lwpoints = _Corners(table.tolist())  # one by one takes ten times as long
 
 
 def _frame(document: Drawing, size: tuple[float, float]) -> None:

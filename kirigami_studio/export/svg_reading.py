@@ -12,8 +12,9 @@ from typing import Any, cast
 from xml.etree import ElementTree
 
 import numpy as np
-from svgelements import SVG, Arc, Close, Group, Line, Move
+from svgelements import SVG, Arc, Group, Point
 from svgelements import Path as SvgPath
+from svgelements.svgelements import SVGLexicalParser
 
 from kirigami_studio.export.file_content import MILLIMETRES, FileContent
 from kirigami_studio.export.strokes import Stroke
@@ -39,6 +40,8 @@ SCALE_DIGITS = 6
 #: Sides of a frame may differ by this, in the drawing's own unit, for they are rounded in the file.
 SAME_SIDE = 1e-3
 _SCALE = re.compile(r"scale\((\d+(?:\.\d+)?)\)")
+#: Attribute that svgelements hands on with a path, here its number; and data of one that is read by itself.
+_NUMBER, _STANDS_FOR_DATA = "tabindex", "M0,0"
 _REPEATS = re.compile(rb"<(\w+:)?use\b")
 
 Row = tuple[float, float, float]
@@ -52,7 +55,7 @@ def read_with_svgelements(path: Path) -> FileContent:
     ExportError
         No readable SVG.
     """
-    svg = _parsed(path)
+    svg, data = _parsed(path)
     try:
         box = svg.viewbox
         scale = float(svg.width) / float(box.width) * MM_PER_PX
@@ -62,7 +65,8 @@ def read_with_svgelements(path: Path) -> FileContent:
         if counted != 1.0:  # the frame as it is written, for svgelements rounds scales and lengths
             scale, width, height = scale * counted, *(_millimetres(svg.values[side]) for side in ("width", "height"))
         strokes = tuple(
-            _stroke(*_segments(path), str(group.id), str(path.stroke.hex), height) for group, path in grouped
+            _stroke(*_corners(data[int(path.values[_NUMBER])]), str(group.id), str(path.stroke.hex), height)
+            for group, path in grouped
         )
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         # What a damaged file leaves out, svgelements has as None or NaN.
@@ -71,14 +75,23 @@ def read_with_svgelements(path: Path) -> FileContent:
     return FileContent("svgelements", strokes, unit, (width, height), _layers(strokes))
 
 
-def _parsed(path: Path) -> Any:
-    """The document as svgelements has it, which carries no types; without elements that stand for others."""
+def _parsed(path: Path) -> tuple[Any, list[str]]:
+    """The document as svgelements has it, which carries no types, and the data of its paths by their ``tabindex``.
+
+    Elements that stand for others are refused.  svgelements makes an object of every corner of a path that it reads
+    with its document, so it reads the data by itself: see :class:`_Corners`.
+    """
     try:
         content = read_at_most(path, LARGEST_FILE)
         refuse_long_numbers(content)
         if _REPEATS.search(content):
             raise ValueError("it repeats elements by 'use', as no cut file does")
-        return cast(Any, SVG).parse(io.BytesIO(content), reify=False)
+        root, data = ElementTree.fromstring(content), list[str]()
+        for element in (one for one in root.iter() if one.tag.rpartition("}")[2] == "path"):
+            element.set(_NUMBER, str(len(data)))
+            data.append(element.get("d", ""))
+            element.set("d", _STANDS_FOR_DATA if data[-1].strip() else "")
+        return cast(Any, SVG).parse(io.BytesIO(ElementTree.tostring(root)), reify=False), data
     except Exception as error:  # svgelements raises a dozen kinds on damaged files
         raise ExportError("svg.not_readable", path=path, reason=str(error).rstrip(".")) from error
 
@@ -190,22 +203,62 @@ def _scale_of_groups(grouped: list[tuple[Any, Any]], scale: float) -> float:
     return found.pop() if found else 1.0
 
 
-def _segments(element: Any) -> tuple[list[Row], bool]:
-    """Points in the drawing's own unit and bulges of one path as svgelements sees it.
+class _Corners:
+    """What svgelements reads of the data of one path, in the drawing's own unit, without an object for each corner.
 
     The scale to the printed size is judged by itself, because svgelements rounds the transform to seven digits.
     """
-    rows: list[Row] = []
-    for segment in element.segments(transformed=False):
-        kind = type(segment)
-        if kind is Close:
-            return rows, True
-        if kind not in (Move, Line, Arc):
-            raise ValueError(f"a path holds a {kind.__name__}")
-        if kind is Arc:
-            rows[-1] = (*rows[-1][:2], math.tan(float(segment.sweep) / 4.0))
-        rows.append((float(segment.end.x), float(segment.end.y), 0.0))
-    return rows, False
+
+    def __init__(self) -> None:
+        self.rows: list[Row] = []
+        self.is_closed = False
+
+    def start(self) -> None:
+        """Nothing is there before the first word."""
+
+    @property
+    def current_point(self) -> Any:
+        return Point(*self.rows[-1][:2]) if self.rows else None
+
+    def move(self, corner: tuple[float, float], relative: bool) -> None:
+        if not self.is_closed:
+            self.rows.append((*corner, 0.0))
+
+    def line(self, corner: tuple[float, float] | str, relative: bool) -> None:
+        if isinstance(corner, str):
+            raise ValueError("a path is closed within a word")
+        self.move(corner, relative)
+
+    def horizontal(self, x: float, relative: bool) -> None:
+        before = self.rows[-1]
+        self.move((x + relative * before[0], before[1]), relative)
+
+    def vertical(self, y: float, relative: bool) -> None:
+        before = self.rows[-1]
+        self.move((before[0], y + relative * before[1]), relative)
+
+    def arc(
+        self, rx: float, ry: float, turn: float, large: bool, sweep: bool, end: tuple[float, float], relative: bool
+    ) -> None:
+        if not self.is_closed:
+            found = cast(Any, Arc)(self.current_point, abs(rx), abs(ry), turn, large, sweep, end)
+            self.rows[-1] = (*self.rows[-1][:2], math.tan(float(found.sweep) / 4.0))
+            self.line(end, relative)
+
+    def closed(self, relative: bool) -> None:
+        self.is_closed = True
+
+    def curve(self, *corners: object, relative: bool) -> None:
+        raise ValueError("a path holds a curve that is no arc")
+
+    cubic = quad = smooth_cubic = smooth_quad = curve
+
+
+def _corners(data: str) -> tuple[list[Row], bool]:
+    """Points and bulges of path data as svgelements reads it."""
+    found = _Corners()
+    cast(Any, SVGLexicalParser)().parse(found, data)
+    return found.rows, found.is_closed
 
 
 def _words(data: str) -> tuple[list[Row], bool]:
