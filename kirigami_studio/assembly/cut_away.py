@@ -176,12 +176,12 @@ class _OpenHoles:
 
     def __init__(self, design: PosedDesign, shown: Polygon, cell_mm: float, options: PinOptions) -> None:
         deployment = design.deployment
-        self._grid, self._options = deployment.sheet.grid, options
+        self._grid, self._options, self._reach_mm = deployment.sheet.grid, options, options.reach * cell_mm
         self._corners = as_plane(deployment.nodes(design.phi_target))[all_panels(*self._grid).corners] * cell_mm
         self._panels = polygons(self._corners)
         self._holes = shapely.union_all([Polygon(ring) for ring in shown.interiors])
-        self._beside = shapely.intersection(shapely.buffer(self._holes, options.reach_mm + cell_mm), shown)
-        self._near = shapely.intersects(self._panels, shapely.buffer(self._holes, options.reach_mm))
+        self._beside = shapely.intersection(shapely.buffer(self._holes, self._reach_mm + cell_mm), shown)
+        self._near = shapely.intersects(self._panels, shapely.buffer(self._holes, self._reach_mm))
         self._inside = shapely.intersection(self._panels, shown)
         share = shapely.area(shapely.intersection(self._panels, self._holes)) / shapely.area(self._panels)
         self._share = _mean_around(share.reshape(self._grid[0] + 1, -1))
@@ -236,7 +236,7 @@ class _OpenHoles:
                 middle = inside if inside.area > 0.0 else walls[0]
                 ways = [LineString(shapely.get_coordinates(shapely.shortest_line(wall, middle))) for wall in walls]
                 needed = shapely.union_all([needed, *shapely.buffer(ways, 0.5 * options.neck_mm)])
-            grown = shapely.buffer(inside, FILLED * options.reach_mm, join_style="mitre")
+            grown = shapely.buffer(inside, FILLED * self._reach_mm, join_style="mitre")
             self._known[key] = grown, float(shapely.intersection(needed, self._holes).area)
         return self._known[key]
 

@@ -56,6 +56,8 @@ class LayerMotion:
         Of the rotation that carries a layer's pieces past each other: 1 in layer 1, -1 in layer 2.
     opening : float, radians
         t at the target angle.
+    cell_mm : float
+        Width of a unit cell.
     """
 
     panel: IntArray
@@ -67,6 +69,7 @@ class LayerMotion:
     drift: ComplexArray
     sense: FloatArray
     opening: float
+    cell_mm: float
 
     @classmethod
     def of(
@@ -92,6 +95,7 @@ class LayerMotion:
             drift=np.where(panels.even, odd[first], even[first]),
             sense=np.where(panels.even, 1.0, -1.0),
             opening=math.pi - check_phi(phi_target),
+            cell_mm=cell_mm,
         )
 
     def without(self, nodes: Sequence[int]) -> LayerMotion:

@@ -37,7 +37,7 @@ class PinOptions:
     margin_mm : float or None
         How far the outlines of both end states lie outside of the lattice's own, so that pins at the rim have their
         walls inside; None for as much as the wall takes.
-    reach_mm : float
+    reach : float, unit cells
         How far pieces are extended at most.
     weight : float, 0..1
         Of the target against the flat outline.  From a half on, pieces are cut along the target; above, they may stick
@@ -62,7 +62,7 @@ class PinOptions:
     wall_mm: float | None = None
     head_mm: float = 7.0
     margin_mm: float | None = None
-    reach_mm: float = 12.0
+    reach: float = 0.9
     weight: float = 0.5
     least_flat: float = 0.97
     in_one_plane: bool = False

@@ -133,8 +133,8 @@ def pinned(
         if only_whole and shaping.broken:
             first = piece_names(shaping.motion)[min(shaping.broken)]
             raise FabricationError("pinned.falls_apart", piece=first, count=len(shaping.broken))
-        opened = EndState.of(deployment, panels, phi, cell_mm, shown, options.reach_mm)
-        closed = EndState.of(deployment, panels, math.pi, cell_mm, flat, options.reach_mm)
+        opened = EndState.of(deployment, panels, phi, cell_mm, shown, shaping.reach_mm)
+        closed = EndState.of(deployment, panels, math.pi, cell_mm, flat, shaping.reach_mm)
         # Of the flat outline of a cover there is no more than its trim leaves.
         covers = design.trim is not None and design.trim.given_up > 0
         shaping = _with_rims(shaping, opened, closed, spare, math.inf if covers else gone)

@@ -379,7 +379,7 @@ def extend_to(
         Pieces that the other end's outline kept from more, or that now reach farther: others gain nothing by a second
         time, for what is free of them becomes less.
     """
-    reach, spent, held_back = shaping.options.reach_mm, 0.0, set[int]()
+    reach, spent, held_back = shaping.reach_mm, 0.0, set[int]()
     placed = shaping.placed(state.turn)
     missing = less(less(state.outline, united(*placed)), state.voids)
     if shaping.options.in_one_plane:  # the clearance all round is none

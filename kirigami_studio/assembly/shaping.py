@@ -305,22 +305,27 @@ class Shaping:
         wide = shapely.buffer(sides, 0.5 * self.options.side_mm, cap_style="flat")
         return _united_by(wide, np.concatenate(owners), len(strips))
 
+    @property
+    def reach_mm(self) -> float:
+        """How far pieces are extended at most."""
+        return self.options.reach * self.motion.cell_mm
+
     @cached_property
     def pairs(self) -> IntArray:
         """Pairs (K, 2) of pieces of one plane that may come near each other; the second is passed."""
         return self.motion.close_pairs(
-            2.0 * self.options.ear_mm + 3.0 * self.options.reach_mm + self.options.clearance_mm
+            2.0 * self.options.ear_mm + 3.0 * self.reach_mm + self.options.clearance_mm
         )
 
     @cached_property
     def _passing_ears(self) -> tuple[IntArray, IntArray]:
         """Ears, as flat indices of corners, and the panels of their plane that they may touch."""
-        return self._ears_near(self.options.reach_mm)
+        return self._ears_near(self.reach_mm)
 
     @cached_property
     def _reached_ears(self) -> tuple[IntArray, IntArray]:
         """The same with panels that are extended in both end states."""
-        return self._ears_near(3.0 * self.options.reach_mm)
+        return self._ears_near(3.0 * self.reach_mm)
 
     def _ears_near(self, reach_mm: float) -> tuple[IntArray, IntArray]:
         """Ears and panels of their plane, larger by a reach, that they may touch."""

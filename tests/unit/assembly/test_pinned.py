@@ -108,7 +108,7 @@ def test_that_layers_alternate_and_names_count_in_reading_order(plan: PinnedPlan
 
 
 def test_that_extensions_draw_the_outlines_that_panels_alone_do_not(report: PinnedReport) -> None:
-    short = check_pinned(pinned(*pinwheel(), WIDTH_MM, PinOptions(reach_mm=0.0, margin_mm=0.0)), 2)
+    short = check_pinned(pinned(*pinwheel(), WIDTH_MM, PinOptions(reach=0.0, margin_mm=0.0)), 2)
     assert report.figures.match > short.figures.match + 0.01
     assert report.figures.kept > short.figures.kept + 0.1
 
@@ -230,7 +230,7 @@ def test_that_ears_become_smaller_where_they_would_cut_a_neighbour_through() -> 
 
 def test_that_extensions_keep_clear_of_ears_that_pass_beyond_their_panels() -> None:
     design, target = pinwheel(4, 4, 0.2, 0.7, 5)
-    assembly = pinned(design, target, WIDTH_MM, PinOptions(reach_mm=30.0)).assembly
+    assembly = pinned(design, target, WIDTH_MM, PinOptions(reach=2.0)).assembly
     assert max(overlap_at(assembly, float(phi)) for phi in np.linspace(math.pi, 0.0, 41)) < 1e-6
 
 
@@ -277,7 +277,7 @@ def test_that_extensions_of_both_end_states_keep_clear_of_ears_far_from_their_pa
         panel = shapely.Polygon(np.column_stack([motion.corners[other].real, motion.corners[other].imag]))
         for corner in np.flatnonzero(motion.hinged[one] & ~np.isin(motion.nodes[one], motion.nodes[other])):
             ear = shapely.Point(motion.corners[one, corner].real, motion.corners[one, corner].imag).buffer(0.5 * radius)
-            if panel.distance(ear) < 2.0 * options.reach_mm and looked_at < 60:
+            if panel.distance(ear) < 2.0 * shaping.reach_mm and looked_at < 60:
                 looked_at += 1
                 seen += shaping.free(other, ear).is_empty
     assert seen == looked_at > 20
