@@ -218,7 +218,7 @@ class _Corners:
 
     @property
     def current_point(self) -> Any:
-        return Point(*self.rows[-1][:2]) if self.rows else None
+        return cast(Any, Point)(*self.rows[-1][:2]) if self.rows else None
 
     def move(self, corner: tuple[float, float], relative: bool) -> None:
         if not self.is_closed:
@@ -257,7 +257,10 @@ class _Corners:
 def _corners(data: str) -> tuple[list[Row], bool]:
     """Points and bulges of path data as svgelements reads it."""
     found = _Corners()
-    cast(Any, SVGLexicalParser)().parse(found, data)
+    try:
+        cast(Any, SVGLexicalParser)().parse(found, data)
+    except ValueError as error:
+        raise ValueError(str(error) or f"the path data {data[:40]!r} is damaged") from error
     return found.rows, found.is_closed
 
 

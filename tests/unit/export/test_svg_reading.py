@@ -51,6 +51,11 @@ def test_that_a_curve_is_refused(tmp_path: Path) -> None:
         read_with_svgelements(svg_of(tmp_path / "one.svg", "M1,2 C1,3 2,4 5,6 Z"))
 
 
+def test_that_damaged_path_data_is_refused_with_its_words(tmp_path: Path) -> None:
+    with pytest.raises(ExportError, match="path data 'M1,2 L5' is damaged"):
+        read_with_svgelements(svg_of(tmp_path / "one.svg", "M1,2 L5"))
+
+
 def test_that_no_corner_becomes_an_object_and_both_readers_agree(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
