@@ -313,9 +313,7 @@ class Shaping:
     @cached_property
     def pairs(self) -> IntArray:
         """Pairs (K, 2) of pieces of one plane that may come near each other; the second is passed."""
-        return self.motion.close_pairs(
-            2.0 * self.options.ear_mm + 3.0 * self.reach_mm + self.options.clearance_mm
-        )
+        return self.motion.close_pairs(2.0 * self.options.ear_mm + 3.0 * self.reach_mm + self.options.clearance_mm)
 
     @cached_property
     def _passing_ears(self) -> tuple[IntArray, IntArray]:

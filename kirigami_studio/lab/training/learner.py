@@ -245,12 +245,10 @@ def adamw(
     device: torch.device,
     recorded: bool,
 ) -> torch.optim.AdamW:
-    """The optimiser of flows and baselines; for ``recorded`` steps all of it on the GPU."""
-    if not recorded:
-        return torch.optim.AdamW(network.parameters(), lr=learning_rate, betas=betas, weight_decay=weight_decay)
-    rate = torch.tensor(learning_rate, device=device)
+    """The optimiser of flows and baselines, one kernel for all weights; ``recorded`` steps hold its rate on the GPU."""
+    rate = torch.tensor(learning_rate, device=device) if recorded else learning_rate
     return torch.optim.AdamW(
-        network.parameters(), lr=rate, betas=betas, weight_decay=weight_decay, fused=True, capturable=True
+        network.parameters(), lr=rate, betas=betas, weight_decay=weight_decay, fused=True, capturable=recorded
     )
 
 
