@@ -193,7 +193,7 @@ def _with_rims(notched: Shaping, opened: EndState, closed: EndState, spare: floa
 
 
 def _shaped(notched: Shaping, opened: EndState, closed: EndState, spare: float, gone: float) -> Shaping:
-    """Cut pieces along both outlines and extend them to these, where ``spare`` mm2 of the flat one may be lost."""
+    """Cut pieces along both outlines and extend them; the flat one may lose ``spare`` mm2."""
     shaping, options = notched.copy(), notched.options
     most = MOST_LOST * (spare - (1.0 - FILLED) * gone) if math.isfinite(gone) else math.inf
     trim_to(shaping, opened, closed, most if options.weight >= 0.5 else 0.0)

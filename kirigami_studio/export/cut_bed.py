@@ -198,7 +198,7 @@ def farthest(one: BaseGeometry, other: BaseGeometry) -> float:
 
 
 def distances(one: BaseGeometry, other: BaseGeometry) -> FloatArray:
-    """How far (K,), mm, corners of a shape are from another shape; bounds of what is below ``SHARP_MM``."""
+    """Distances (K,), mm, of corners to another shape; bounds of those below ``SHARP_MM``."""
     corners, others = shapely.get_coordinates(one), shapely.get_coordinates(other)
     if not len(corners) or not len(others):
         return np.full(len(corners), math.inf)

@@ -161,7 +161,7 @@ class _Text(str):
 
 
 class _Corners(LWPolylinePoints):
-    """Corners of a line without width, written in one go: ezdxf makes objects of each corner and each number."""
+    """Corners of a line without width, written in one go: ezdxf makes objects of each."""
 
     def dxftags(self) -> Iterator[Any]:
         rows = (

@@ -76,10 +76,10 @@ def read_with_svgelements(path: Path) -> FileContent:
 
 
 def _parsed(path: Path) -> tuple[Any, list[str]]:
-    """The document as svgelements has it, which carries no types, and the data of its paths by their ``tabindex``.
+    """The document as svgelements has it, and the data of its paths by their ``tabindex``.
 
     Elements that stand for others are refused.  svgelements makes an object of every corner of a path that it reads
-    with its document, so it reads the data by itself: see :class:`_Corners`.
+    with its document, so it reads the data by itself: see :class:`_LexedPath`.
     """
     try:
         content = read_at_most(path, LARGEST_FILE)
@@ -203,8 +203,8 @@ def _scale_of_groups(grouped: list[tuple[Any, Any]], scale: float) -> float:
     return found.pop() if found else 1.0
 
 
-class _Corners:
-    """What svgelements reads of the data of one path, in the drawing's own unit, without an object for each corner.
+class _LexedPath:
+    """Points of one path as svgelements' lexer reads them, in the drawing's own unit.
 
     The scale to the printed size is judged by itself, because svgelements rounds the transform to seven digits.
     """
@@ -256,7 +256,7 @@ class _Corners:
 
 def _corners(data: str) -> tuple[list[Row], bool]:
     """Points and bulges of path data as svgelements reads it."""
-    found = _Corners()
+    found = _LexedPath()
     try:
         cast(Any, SVGLexicalParser)().parse(found, data)
     except ValueError as error:

@@ -409,7 +409,7 @@ def _tried_upright(request: Request, choice: GridChoice, trials: Trials) -> Grid
 def _worth_of_long_cells(
     request: Request, choice: GridChoice, near: list[_Candidate], trials: Trials
 ) -> dict[_Candidate, float]:
-    """Worth of grids of long cells, and of the predicted one, where fits of a long target are lost on that."""
+    """Worth of grids of long cells where fits of a long target are lost on the predicted one."""
     proportions = Proportions.of(request.silhouette)
     own = next((one for one in near if one.grid == choice.grid), None)
     if own is None or proportions.along(proportions.direction) < LONG_TARGET:

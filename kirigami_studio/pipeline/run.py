@@ -647,7 +647,7 @@ class _Work:
         yield from self._covered_by(tasks, PINNED_COVERS)
 
     def _covered_by(self, tasks: Sequence[Task], most: int, least: float = -math.inf) -> Iterator[Event]:
-        """The best covers that tasks make and that are worth more than this, as designs of their own."""
+        """The best covers that tasks make, where they are worth more than this, as designs."""
         covers: dict[int, Candidate] = {}
         for report in self._carried_out(tasks, COVERING, 0, len(tasks)):
             if isinstance(report, Progress):

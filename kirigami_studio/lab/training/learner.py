@@ -245,7 +245,7 @@ def adamw(
     device: torch.device,
     recorded: bool,
 ) -> torch.optim.AdamW:
-    """The optimiser of flows and baselines, one kernel for all weights; ``recorded`` steps hold its rate on the GPU."""
+    """The optimiser of flows and baselines, one kernel for all weights."""
     rate = torch.tensor(learning_rate, device=device) if recorded else learning_rate
     return torch.optim.AdamW(
         network.parameters(), lr=rate, betas=betas, weight_decay=weight_decay, fused=True, capturable=recorded

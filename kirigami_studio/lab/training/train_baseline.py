@@ -145,7 +145,7 @@ class Masked:
         self._corpus, self._pixels = corpus, pixels
 
     def chunk(self, number: int) -> Chunk:
-        """z (C, m * n) and, in place of polygons, masks (C, 1, latent, latent) of the targets stood upright."""
+        """z (C, m * n) and, for polygons, masks (C, 1, latent, latent) of upright targets."""
         found = self._corpus.chunk(number)
         parts = found.polygons.split(DRAWN_TOGETHER)
         return Chunk(found.z, torch.cat([self._pixels.masks(turned(part, -square_pose(part))) for part in parts]))
@@ -215,7 +215,7 @@ class BaselineRun:
         return {"loss": float(loss)}
 
     def _descend(self, z: Tensor, targets: Tensor) -> tuple[Tensor]:
-        """One step on designs z (B, m * n) with their silhouettes (B, L, 2), or masks of these; returns the loss."""
+        """One step on designs z (B, m * n) with silhouettes (B, L, 2) or masks; returns the loss."""
         network = self.learner.network
         masks = targets if self.still else network.pixels.masks(self.disturbance.seen(targets, self.generator))
         loss = self.learner.loss(lambda: network.loss(z, masks, self.generator))

@@ -77,7 +77,7 @@ def start_of(start: str, settings: Figures) -> str:
 
 
 def by_family(suites: Iterable[Figures]) -> list[Figures]:
-    """Figures of one family each, with the rows of all calls that differ in nothing but the rows; later ones count.
+    """Figures of one family each, with the rows of all calls like it; later ones count.
 
     Calls differ where their settings, seeds or numbers of targets do.
     """
