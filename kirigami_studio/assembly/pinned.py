@@ -138,6 +138,7 @@ def pinned(
         # Of the flat outline of a cover there is no more than its trim leaves.
         covers = design.trim is not None and design.trim.given_up > 0
         shaping = _with_rims(shaping, opened, closed, spare, math.inf if covers else gone)
+        shaping.close_slits()
         if gone and not covers and closed.missing(shaping) > spare:
             return pinned(design, target, width_mm, options, only_whole, drop_hardly_shown=False)
     assembly = assembled(shaping, deployment, cell_mm, phi)

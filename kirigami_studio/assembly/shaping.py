@@ -48,6 +48,8 @@ LEAST_PART = 0.5
 TOO_SMALL = 1e-3
 #: Vertices that lie nearer than this, mm, to the line between their neighbours are left out.
 STRAIGHT = 0.005
+#: Slits of pieces narrower than twice this, mm, are closed where they are longer than half of that.
+SLIT, SLIT_LENGTH = 1e-4, 0.02
 #: Areas between necks are larger by this, mm, all round than the shapes that they are parts of: edges that nearly
 #: coincide take overlays six times as long.
 CLEAR = 1e-4
@@ -463,6 +465,12 @@ class Shaping:
         plane = int(self.motion.plane[index])
         self._parts[plane] = self._parts[plane].with_more(index, new[shapely.area(new) > TOO_SMALL])
         self.bodies[index] = shape
+
+    def close_slits(self) -> None:
+        """Close what is narrower than ``SLIT``: sides of additions that meet with nothing between them."""
+        closed = shapely.buffer(shapely.buffer(self.bodies, SLIT, join_style="mitre"), -SLIT, join_style="mitre")
+        slit = shapely.length(self.bodies) - shapely.length(closed) > SLIT_LENGTH
+        self.bodies[slit] = closed[slit]
 
     def placed(self, turn: float) -> GeometryArray:
         """All pieces at t = ``turn``, in the frame of the deployment, mm."""

@@ -107,6 +107,16 @@ def test_that_layers_alternate_and_names_count_in_reading_order(plan: PinnedPlan
         assert piece.label_mm > 3.0
 
 
+def test_that_a_slit_with_nothing_in_it_is_closed_and_other_pieces_stay() -> None:
+    shaping = Shaping.of(pinwheel(3, 3)[0].deployment, 40.0, 0.0, PinOptions())
+    slit = shapely.Polygon([(0, 0), (30, 0), (30, 30), (15 + 1e-7, 30), (15, 10), (15 - 1e-7, 30), (0, 30)])
+    before = shaping.bodies.copy()
+    shaping.bodies[0] = slit
+    shaping.close_slits()
+    assert shaping.bodies[0].length == pytest.approx(120.0) and shaping.bodies[0].area == pytest.approx(900.0)
+    assert all(one is other for one, other in zip(shaping.bodies[1:], before[1:], strict=True))
+
+
 def test_that_extensions_draw_the_outlines_that_panels_alone_do_not(report: PinnedReport) -> None:
     short = check_pinned(pinned(*pinwheel(), WIDTH_MM, PinOptions(reach=0.0, margin_mm=0.0)), 2)
     assert report.figures.match > short.figures.match + 0.01
