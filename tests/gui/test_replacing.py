@@ -29,8 +29,15 @@ def asked(window: MainWindow) -> str:
     return found[0] if found else ""
 
 
-def answer(window: MainWindow, label: str) -> None:
-    next(button for button in window.messages.findChildren(QPushButton) if button.text() == label).click()
+def answer(window: MainWindow, label: str, until: Until) -> None:
+    """Press an answer to the question that is shown; those to an older one are hidden until they are deleted."""
+
+    def shown() -> list[QPushButton]:
+        buttons = window.messages.findChildren(QPushButton)
+        return [button for button in buttons if button.text() == label and button.isVisible()]
+
+    until(lambda: bool(shown()))
+    shown()[0].click()
 
 
 def open_and_wait(window: MainWindow, source: str, until: Until) -> None:
@@ -43,7 +50,7 @@ def test_that_several_objects_are_replaced_only_after_a_question(pair: MainWindo
     open_and_wait(pair, "star", until)
     assert "several objects" in asked(pair)
     assert pair.session.document is before
-    answer(pair, "Replace")
+    answer(pair, "Replace", until)
     target = pair.session.document.target
     assert target is not None and target.name == "star" and pair.session.document.drawing == ()
     assert not asked(pair)
@@ -55,7 +62,7 @@ def test_that_the_shape_may_be_added_beside_what_was_drawn(pair: MainWindow, unt
     before = bounds(pair)
     open_and_wait(pair, "star", until)
     pair.target.set_editing(False)
-    answer(pair, "Add beside")
+    answer(pair, "Add beside", until)
     assert bounds(pair)[:2] == before and len(bounds(pair)) == 3
     left, bottom, right, top = bounds(pair)[2]
     assert left > 40 and max(right - left, top - bottom) == pytest.approx(30)  # half as long as the two
@@ -71,7 +78,7 @@ def test_that_the_shape_may_be_added_beside_what_was_drawn(pair: MainWindow, unt
 def test_that_a_file_in_mm_is_added_in_its_own_size(plate: MainWindow, until: Until, tmp_path: Path) -> None:
     open_and_wait(plate, str(written(tmp_path, DISC)), until)
     assert "by hand" in asked(plate)
-    answer(plate, "Add beside")
+    answer(plate, "Add beside", until)
     left, _, right, _ = bounds(plate)[1]
     assert right - left == pytest.approx(30, rel=1e-3)
 
@@ -79,7 +86,7 @@ def test_that_a_file_in_mm_is_added_in_its_own_size(plate: MainWindow, until: Un
 def test_that_cancel_leaves_everything_as_it_is(pair: MainWindow, until: Until) -> None:
     before, steps = pair.session.document, pair.session.history.steps
     open_and_wait(pair, "star", until)
-    answer(pair, "Cancel")
+    answer(pair, "Cancel", until)
     assert pair.session.document is before and pair.session.history.steps == steps
     assert not asked(pair) and pair.status_text.text() == "Nothing changed."
 
@@ -88,7 +95,7 @@ def test_that_a_newer_shape_is_asked_about_instead(pair: MainWindow, until: Unti
     open_and_wait(pair, "star", until)
     pair.files.open("heart")
     until(lambda: "heart" in asked(pair).lower())
-    answer(pair, "Replace")
+    answer(pair, "Replace", until)
     target = pair.session.document.target
     assert target is not None and target.name == "heart"
 
@@ -158,6 +165,6 @@ def test_that_a_question_whose_drawing_is_gone_is_not_dropped_in_silence(pair: M
 
 def test_that_an_answered_question_is_not_spoken_of_later(pair: MainWindow, until: Until) -> None:
     open_and_wait(pair, "star", until)
-    answer(pair, "Cancel")
+    answer(pair, "Cancel", until)
     pair.services.targeting.clear()
     assert pair.messages.messages == ()

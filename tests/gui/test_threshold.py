@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QApplication, QPushButton
+from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from kirigami_studio.gui.target.sketch_context import Change
@@ -19,6 +19,7 @@ from kirigami_studio.gui.window.main_window import MainWindow
 from kirigami_studio.outlines.placed import Placed
 from kirigami_studio.outlines.read_image import automatic_threshold, read_image
 from kirigami_studio.studio.targets import reading_target
+from tests.gui.test_replacing import answer
 
 Until = Callable[[Callable[[], bool]], None]
 
@@ -140,7 +141,7 @@ def test_that_the_picture_stays_while_it_is_drawn_over_and_goes_with_another_tar
     shown = traced.target.view.grab().toImage()
     traced.services.targeting.open("heart")
     until(lambda: bool(traced.messages.messages))  # it was smoothed by hand: the window asks
-    next(button for button in traced.messages.findChildren(QPushButton) if button.text() == "Replace").click()
+    answer(traced, "Replace", until)
     until(lambda: traced.session.document.target is not None and traced.session.document.target.name == "heart")
     assert traced.target.view.underlay is None and traced.target.view.grab().toImage() != shown
 
