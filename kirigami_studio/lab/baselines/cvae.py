@@ -103,25 +103,32 @@ class Cvae(ConditionalGenerator):
     pixels : FieldPixels
     channels : tuple of int
         Of each level, finest first; every further level halves the resolution.
+    kl_weight : float
+        Weight of the Kullback-Leibler divergence from the prior in the loss.
     """
 
-    def __init__(self, pixels: FieldPixels | None = None, channels: tuple[int, ...] = (32, 64, 64)) -> None:
+    def __init__(
+        self,
+        pixels: FieldPixels | None = None,
+        channels: tuple[int, ...] = (32, 64, 64),
+        kl_weight: float = KL_WEIGHT,
+    ) -> None:
         super().__init__()
         self.pixels = pixels or FieldPixels()
         if self.pixels.latent % 2 ** (len(channels) - 1):
             raise UsageError("model.baseline_pixels", latent=self.pixels.latent, mask=self.pixels.mask)
-        self.channels = tuple(channels)
+        self.channels, self.kl_weight = tuple(channels), kl_weight
         self.encoder, self.decoder = Encoder(self.channels), Decoder(self.channels)
 
     def settings(self) -> dict[str, Any]:
-        return {**super().settings(), "channels": list(self.channels)}
+        return {**super().settings(), "channels": list(self.channels), "kl_weight": self.kl_weight}
 
     def loss(self, z: Tensor, masks: Tensor, draws: torch.Generator) -> Tensor:
         mean, log_variance = self.encoder(self.pixels.image(z))
         latent = mean + torch.exp(0.5 * log_variance) * normal(tuple(mean.shape), draws)
         made = self.pixels.field(self.decoder(latent, masks))
         divergence = 0.5 * (mean.square() + log_variance.exp() - 1.0 - log_variance).flatten(1).sum(dim=1)
-        loss: Tensor = functional.l1_loss(made, z) / self.pixels.z_scale + KL_WEIGHT * divergence.mean()
+        loss: Tensor = functional.l1_loss(made, z) / self.pixels.z_scale + self.kl_weight * divergence.mean()
         return loss
 
     def draw(self, masks: Tensor, draws: torch.Generator, steps: int) -> Tensor:

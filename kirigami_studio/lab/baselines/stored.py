@@ -60,7 +60,7 @@ def generator_of(kind: str, settings: dict[str, Any] | None = None) -> Condition
     given = dict(settings or {})
     if kind == "diffusion":
         return Diffusion(UNetShape(**given))
-    layers = {name: given.pop(name) for name in ("channels", "patches") if name in given}
+    layers = {name: given.pop(name) for name in ("channels", "patches", "kl_weight") if name in given}
     if "channels" in layers:
         layers["channels"] = tuple(layers["channels"])
     if kind == "cvae":

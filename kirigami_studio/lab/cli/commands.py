@@ -97,6 +97,12 @@ RUN_FOLDER = option("--out", required=True, help="run folder for checkpoint, log
 
 
 RESIDUALS = option("--residuals", type=count, default=2, help="residual blocks of each level (default 2)")
+KL_WEIGHT = option(
+    "--kl-weight",
+    type=amount,
+    default=1e-4,
+    help="weight of the Kullback-Leibler divergence in the loss (default 0.0001, the paper's)",
+)
 
 
 def run_of_training(validate_every: int) -> tuple[Option, ...]:
@@ -225,7 +231,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio train prior --backbone unet --coupling ot --batch 64 --noises 1 --learning-rate 2e-5 "
         "--weight-decay 0.05 --outline-weight 0 --steps 31250 --out runs/unet")),
     SubCommand("train cvae", "train the paper's conditional autoencoder, to compare with", "lab.cli.learning:cvae",
-        training_of_a_baseline(2e-4, "32,64,64"), ("kirigami-studio train cvae --steps 4000 --out runs/cvae",)),
+        training_of_a_baseline(2e-4, "32,64,64", KL_WEIGHT),
+        ("kirigami-studio train cvae --steps 4000 --out runs/cvae",)),
     SubCommand("train cgan", "train the paper's conditional GAN, to compare with", "lab.cli.learning:cgan",
         training_of_a_baseline(2e-4, "32,64"), ("kirigami-studio train cgan --steps 4000 --out runs/cgan",)),
     SubCommand("train diffusion", "train the paper's diffusion model, to compare with", "lab.cli.learning:diffusion",

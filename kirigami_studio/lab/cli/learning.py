@@ -196,7 +196,7 @@ def _channels(text: str) -> tuple[int, ...]:
 
 def cvae(arguments: argparse.Namespace) -> int:
     """Train the conditional autoencoder of the paper's comparison."""
-    return _baseline(arguments, "cvae", {})
+    return _baseline(arguments, "cvae", {"kl_weight": arguments.kl_weight})
 
 
 def cgan(arguments: argparse.Namespace) -> int:
@@ -209,7 +209,7 @@ def diffusion(arguments: argparse.Namespace) -> int:
     return _baseline(arguments, "diffusion", {"residuals": arguments.residuals})
 
 
-def _baseline(arguments: argparse.Namespace, kind: str, network: dict[str, int], first_moment: float = 0.9) -> int:
+def _baseline(arguments: argparse.Namespace, kind: str, network: dict[str, float], first_moment: float = 0.9) -> int:
     """Train a baseline, or go on training it, and write its weights into the run folder."""
     return _in_group(arguments, partial(_train_baseline, arguments, kind, network, first_moment))
 
@@ -217,7 +217,7 @@ def _baseline(arguments: argparse.Namespace, kind: str, network: dict[str, int],
 def _train_baseline(
     arguments: argparse.Namespace,
     kind: str,
-    network: dict[str, int],
+    network: dict[str, float],
     first_moment: float,
     process: Process,
 ) -> None:

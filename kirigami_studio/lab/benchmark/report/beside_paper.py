@@ -14,8 +14,6 @@ from kirigami_studio.lab.benchmark.paper_tables import GRPO_CALLS, TRAINING_BATC
 from kirigami_studio.lab.benchmark.report.cells import Figures, is_replaced, measured, share, start_of
 
 MIXED = "mixed"
-#: Pixels each way, with which networks for 10 x 10 ratios smooth their fields.
-COARSE = 16
 SOLVER = (
     "run with the paper's settings as far as it gives them; how its targets and its measure differ from these is not "
     "known, see *Table 1*"
@@ -39,10 +37,8 @@ DEVIATIONS = (
     "paired at random, not by optimal transport; silhouettes upright, a little turned and moved; an exponential "
     "average of the weights, not a stochastic one; a learning rate that falls from 2e-3 along a cosine, not 2e-5 "
     "throughout.",
-    "`ot-cfm`, `diffusion`, `cgan` and `cvae` of the older tables: smaller networks on 16 x 16 pixels, 3000 steps on "
-    "an endless mixture of families. Those trained on the 5000 designs of one family have one pixel for each ratio: "
-    "`diffusion` on *released* 24 and 48 channels, `cgan` on *released* 8 and 16, silhouettes as they lie, `ot-cfm` on "
-    "*structured* 16 and 32, trained as `paper` was.",
+    "`ot-cfm` (16 and 32 channels), `diffusion`, `cgan` and `cvae` (8 and 16 each): one pixel for each ratio, too, on "
+    "the 5000 designs of one family; `ot-cfm` trained as `paper` was, the others on silhouettes as they lie.",
     "GRPO follows the paper's text (groups of 4, temperature 0.2, penalties), not the settings of its released code.",
     "The classes of the Inception-style score are centres of training fields: the paper does not name its features.",
 )
@@ -116,7 +112,7 @@ def rows_beside_paper(
     return [
         *(row for figures in solvers for row in _solver_rows(figures)),
         *(row for figures in generators for row in _generator_rows(figures, falling)),
-        *_aligned_rows(grpo),
+        *_aligned_rows(grpo, generators),
     ]
 
 
@@ -191,11 +187,6 @@ def _generator_rows(figures: Figures, falling: Collection[str]) -> Iterator[Comp
             trained = figures.get("trained", {}).get(name)
             causes = ["how it was trained is not recorded"] if trained is None else _causes(trained, family)
             why = list(causes)
-            if trained is not None and trained["latent"] == COARSE:
-                why.append(
-                    f"fields are resized to {COARSE} x {COARSE} pixels, which smooths the checkerboard that makes the "
-                    "shape"
-                )
             if name in falling:
                 why.append("its match on validation falls while it is trained, see *Training*")
             yield from _row("2, generators", family, name, found, row, "; ".join(causes), "; ".join(why))
@@ -214,7 +205,7 @@ def _causes(trained: Figures, family: str) -> list[str]:
     return causes
 
 
-def _aligned_rows(figures: Figures | None) -> Iterator[Compared]:
+def _aligned_rows(figures: Figures | None, generators: Sequence[Figures]) -> Iterator[Compared]:
     """The last rows of Table 3's runs, without those of a start that is no longer bundled."""
     if figures is None:
         return
@@ -226,8 +217,21 @@ def _aligned_rows(figures: Figures | None) -> Iterator[Compared]:
                     continue
                 trained = {"calls": snapshots[-1]["calls"], "family": settings.get("family", MIXED)}
                 apart = ["the bundled prior"] if start == "bundled prior" else _causes(trained, family)
-                full_name = f"{name} (from {start_of(start, settings)})"
-                yield from _row("3, GRPO", family, full_name, found, snapshots[-1], "; ".join(apart), START)
+                why = "; ".join((START, *_at_its_variation(snapshots)))
+                full_name = f"{name} (from {start_of(start, settings, generators)})"
+                yield from _row("3, GRPO", family, full_name, found, snapshots[-1], "; ".join(apart), why)
+
+
+def _at_its_variation(snapshots: Sequence[Figures]) -> Iterator[str]:
+    """What a run of GRPO had reached before its end, where its total variation was nearest the paper's."""
+    paper = snapshots[-1]["paper"]
+    if paper and paper.get("tv"):
+        nearest = min(snapshots, key=lambda row: abs(float(row["tv"]) - float(paper["tv"])))
+        if nearest is not snapshots[-1]:
+            yield (
+                f"after {nearest['calls']} calls its TV is {nearest['tv']:.2f} (the paper's {paper['tv']:.2f}, ours in "
+                f"the end {snapshots[-1]['tv']:.2f}), and sIoU {share(nearest['siou'])}"
+            )
 
 
 def _row(

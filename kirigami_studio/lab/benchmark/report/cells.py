@@ -10,8 +10,6 @@ from kirigami_studio.generator.weights import digest_of, variants
 
 #: JSON of a suite, as it comes from its file.
 Figures = dict[str, Any]
-#: Stands beside tables for which :func:`is_earlier` holds.
-EARLIER = "An earlier run: the released code's measure was not taken in it."
 
 
 def share(value: float, digits: int = 1) -> str:
@@ -54,11 +52,6 @@ def seeds_of(figures: Figures) -> str:
     return f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}"
 
 
-def is_earlier(figures: Figures) -> bool:
-    """Whether figures of a suite lack the released code's measure."""
-    return any(table.get("uniform_siou_released") is None for table in figures["families"].values())
-
-
 def rows_of_older_weights(measured: Mapping[str, str]) -> list[str]:
     """Bundled variants whose weights, by SHA-256, are not those measured."""
     bundled = {name: digest_of(name) for name in variants()}
@@ -71,9 +64,13 @@ def is_replaced(start: str, settings: Figures) -> bool:
     return variant != start and bool(rows_of_older_weights({variant: str(settings.get("start", ""))}))
 
 
-def start_of(start: str, settings: Figures) -> str:
-    """Name of the weights that a run of GRPO began with, bundled still or earlier."""
-    return f"an earlier {start.removeprefix('bundled ')}" if is_replaced(start, settings) else f"the {start}"
+def start_of(start: str, settings: Figures, generators: Sequence[Figures] = ()) -> str:
+    """Name of the weights that a run of GRPO began with: bundled, earlier, or those of a row of Table 2."""
+    if is_replaced(start, settings):
+        return f"an earlier {start.removeprefix('bundled ')}"
+    rows = {digest: name for figures in generators for name, digest in figures["weights"].items()}
+    own = "" if start.startswith("bundled ") else rows.get(str(settings.get("start", "")), "")
+    return f"`{own}` of Table 2" if own else f"the {start}"
 
 
 def by_family(suites: Iterable[Figures]) -> list[Figures]:

@@ -8,11 +8,9 @@ from itertools import pairwise
 from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
 from kirigami_studio.lab.benchmark.paper_tables import TRAINING_BATCH, TRAINING_STEPS
 from kirigami_studio.lab.benchmark.report.cells import (
-    EARLIER,
     Figures,
     beside,
     interval,
-    is_earlier,
     measured,
     points,
     rows_of_older_weights,
@@ -48,8 +46,6 @@ def _generator_tables(figures: Figures, pictures: dict[str, bytes]) -> Iterator[
             f"Measured before the bundled weights were trained anew: {', '.join(older)}. "
             "The model card has the figures of those that are bundled now."
         )
-    if is_earlier(figures):
-        notes.append(EARLIER)
     if short := _short_of_budget(figures):
         notes.append(f"Trained on less than the paper's {TRAINING_STEPS} steps of {TRAINING_BATCH}: {short}.")
     for family, table in figures["families"].items():
@@ -92,9 +88,13 @@ def _short_of_budget(figures: Figures) -> str:
     return ", ".join(f"{name} ({one['steps']} of {one['batch']}, {one['family']})" for name, one in short.items())
 
 
-def grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
-    """The paper's Table 3: what GRPO made of priors, beside a control without reward."""
+def grpo_section(figures: Figures, generators: Sequence[Figures], pictures: dict[str, bytes]) -> Iterator[str]:
+    """The paper's Table 3: what GRPO made of priors, which may be rows of Table 2, beside a control without reward."""
     settings = figures["settings"]
+    began = {
+        start: start_of(start, next(iter(training.values())), generators)
+        for start, training in figures["training"].items()
+    }
     yield "## Table 3: GRPO"
     yield ""
     yield (
@@ -105,14 +105,10 @@ def grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
         f"|d log10 x| of neighbours, *distance* as in Table 2 with {settings['k']} samples. "
         "`kirigami-studio benchmark grpo RUN ...`"
     )
-    if is_earlier(figures):
-        yield ""
-        yield f"{EARLIER} What GRPO made of the `paper` that is bundled now is in Table 2."
     for family, table in figures["families"].items():
         for start, runs in table["starts"].items():
             yield ""
-            began = start_of(start, next(iter(figures["training"][start].values())))
-            yield f"{family.capitalize()}, {table['targets']} targets, from {began}"
+            yield f"{family.capitalize()}, {table['targets']} targets, from {began[start]}"
             yield ""
             yield (
                 "| run | calls | sIoU | 95 % | as released | over start | over control | exact IoU | success | TV | "
@@ -125,11 +121,11 @@ def grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
             )
             yield _grpo_row("start", next(iter(runs.values()))[0])
             for name, rows in runs.items():
-                yield _grpo_row(name, rows[-1])
+                yield from (_grpo_row(name, row) for row in rows[1:])
     for start, training in figures["training"].items():
         yield ""
-        yield f"Trained from {start_of(start, next(iter(training.values())))}: {_trained(training)}."
-    yield from _made_table(figures)
+        yield f"Trained from {began[start]}: {_trained(training)}."
+    yield from _made_table(figures, began)
     for place, start in enumerate(next(iter(figures["families"].values()))["starts"], 1):
         for family, table in figures["families"].items():
             for title, name, factor in (("sIoU (%)", "siou", 100.0), ("TV", "tv", 1.0)):
@@ -139,7 +135,7 @@ def grpo_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:
                 )
                 picture = f"benchmark-grpo-{place}-{family}-{name}.svg"
                 pictures[picture] = LineChart("environment calls", title, curves).svg()
-                yield f"![{title} against environment calls, {family}, from the {start}]({picture})"
+                yield f"![{title} against environment calls, {family}, from {began[start]}]({picture})"
                 yield ""
 
 
@@ -161,14 +157,14 @@ def _trained(training: Mapping[str, Figures]) -> str:
     alike = [name for name in names if len({str(settings[name]) for settings in training.values()}) == 1]
 
     def told(settings: Figures, chosen: Sequence[str]) -> str:
-        return ", ".join(f"{name} {settings[name]}" for name in chosen)
+        return ", ".join(f"{name} {settings[name]}" for name in chosen if settings[name] != "")
 
     own = [name for name in names if name not in alike]
     each = [f"*{run}* ({told(settings, own)})" for run, settings in training.items()]
     return f"{'; '.join(each)}; all with {told(next(iter(training.values())), alike)}"
 
 
-def _made_table(figures: Figures) -> Iterator[str]:
+def _made_table(figures: Figures, began: Mapping[str, str]) -> Iterator[str]:
     settings = figures["settings"]
     yield ""
     yield (
@@ -186,7 +182,7 @@ def _made_table(figures: Figures) -> Iterator[str]:
             for name, row in named:
                 shares = " | ".join(share(row[kind]) for kind in ("cuttable", "closes", "even", "good"))
                 over = points(row["over_start"], "good", digits=1)
-                yield f"| {family} | {start} | {name} | {row['area_cv']:.3f} | {shares} | {over} |"
+                yield f"| {family} | {began[start]} | {name} | {row['area_cv']:.3f} | {shares} | {over} |"
     yield ""
 
 
@@ -207,10 +203,10 @@ def training_section(
     yield "The paper: 31250 steps of 64 designs for each of its generators, on two RTX 4090."
     yield ""
     yield (
-        "| run | weights | steps | batch | learning rate | minutes | structured | released | Sobol | drawn shapes | "
-        "loss |"
+        "| run | trained on | weights | steps | batch | learning rate | minutes | structured | released | Sobol | "
+        "drawn shapes | loss |"
     )
-    yield "|---|---|---|---|---|---|---|---|---|---|---|"
+    yield "|---|---|---|---|---|---|---|---|---|---|---|---|"
     for name, log in logs.items():
         last = log[-1]
         told = about.get(name, {"parameters": "", "settings": {}})
@@ -219,7 +215,7 @@ def training_section(
         families = ("structured", "released", "sobol", "drawn")
         matches = (measured(last.get(f"{family}_iou")) for family in families)
         yield (
-            f"| {name} | {size} | {last['step']:.0f} | {settings.get('batch', '')} | "
+            f"| {name} | {settings.get('family', '')} | {size} | {last['step']:.0f} | {settings.get('batch', '')} | "
             f"{settings.get('learning_rate', '')} | {_minutes(log):.0f} | {' | '.join(matches)} | "
             f"{last['loss']:.4f} |"
         )

@@ -109,7 +109,7 @@ def made_from(folder: Path) -> Report:
             lines += [f"![{title}]({SAMPLES.name})", ""]
         aligned = _read(folder / GRPO)
         if aligned is not None:
-            lines += grpo_section(aligned, pictures)
+            lines += grpo_section(aligned, generators, pictures)
         if logs:
             told = {name: _read(folder / TRAINING / name / ABOUT) for name in logs}
             about = {name: found for name, found in told.items() if found is not None}

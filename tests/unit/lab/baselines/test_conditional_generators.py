@@ -62,6 +62,18 @@ def test_that_training_lowers_the_loss_on_one_batch(kind: str) -> None:
     assert sum(losses[-10:]) < 0.9 * sum(losses[:10])
 
 
+def test_that_the_divergence_of_an_autoencoder_counts_by_its_weight(tmp_path: Path) -> None:
+    z, masks = torch.linspace(-0.8, 0.8, 16).expand(2, -1), PIXELS.masks(square().expand(2, -1, -1))
+    losses = []
+    for weight in (0.0, 0.01, 0.02):
+        torch.manual_seed(0)
+        network = Cvae(PIXELS, (8, 8), kl_weight=weight)
+        losses.append(float(network.loss(z, masks, torch.Generator().manual_seed(1)).detach()))
+    assert losses[1] - losses[0] == pytest.approx(losses[2] - losses[1], rel=1e-3) and losses[1] > losses[0]
+    path = store_generator("cvae", network, tmp_path / "cvae.safetensors", {})
+    assert load_generator(path).network.settings()["kl_weight"] == 0.02
+
+
 def test_that_the_diffusion_backbone_gets_the_mask() -> None:
     """Its gates begin at zero, so that it has to learn to look; with other weights, the noise depends on the mask."""
     network = small("diffusion").eval()

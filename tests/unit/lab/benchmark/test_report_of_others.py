@@ -52,4 +52,4 @@ def test_that_training_runs_have_the_minutes_of_all_their_sittings(tmp_path: Pat
     figures = {"loss": 1.0, "structured_iou": 0.8, "released_iou": 0.9, "sobol_iou": 0.7, "drawn_iou": 0.6}
     lines = [{"step": step, "seconds": 60.0 * minutes, **figures} for step, minutes in enumerate((5, 9, 2, 4, 1))]
     log.write_text("".join(json.dumps(line) + "\n" for line in lines))
-    assert "| diffusion |  | 4 |  |  | 14 | 80.0 | 90.0 | 70.0 | 60.0 | 1.0000 |" in made_from(tmp_path).text
+    assert "| diffusion |  |  | 4 |  |  | 14 | 80.0 | 90.0 | 70.0 | 60.0 | 1.0000 |" in made_from(tmp_path).text
