@@ -21,8 +21,6 @@ import shapely
 from kirigami_studio.foundation.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from kirigami_studio.mechanics.connectors import SheetConnectors
 
-#: Panels have met where one is this share of the mean connector's width in the other.
-DEEP = 0.1
 #: Within so many widths of connector and kerf around its centre the material bends, so that it is no rigid panel.
 BENDING_SPANS = 1.25
 #: Void angles (degrees) at which panels are tried; pairs that are free at all of them do not meet.
@@ -69,12 +67,11 @@ def meetings(panels: Sequence[FloatArray], connectors: SheetConnectors, voids: I
     voids : (V, 4) int
         Connectors at the corners of every void, in turn; ``NONE`` where there is none.
     """
-    deep = DEEP * float(connectors.width_mm.mean())
     rigid = panel_areas(panels, kerf_mm)
     found = [
         corner
         for pairs in (_across(rigid, connectors, voids), _beside(rigid, connectors, kerf_mm))
-        for corner in pairs.corners(deep)
+        for corner in pairs.corners(connectors.meeting_mm)
     ]
     rows = [np.array(column) for column in zip(*found, strict=True)]
     return Meetings(*rows) if rows else Meetings.none()

@@ -33,6 +33,8 @@ CENTRE_SHARP, CENTRE_WIDE, WIDE_KERF = 0.73, 0.56, 4.0
 STRETCHING, SHEARING = (4.08, -1.7), (4.29, 1.6)
 #: The formulas hold for panels at least so many times as large as their connectors are wide.
 LEAST_RATIO = 2.0
+#: Panels have met where one is this share of the mean connector's width in the other.
+MEETING_SHARE = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +105,11 @@ class SheetConnectors:
 
     def __len__(self) -> int:
         return len(self.panels)
+
+    @property
+    def meeting_mm(self) -> float:
+        """How far one panel is in another one where they have met, mm; 0 without connectors."""
+        return MEETING_SHARE * float(self.width_mm.mean()) if len(self) else 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,7 +16,7 @@ import numpy.typing as npt
 import shapely
 
 from kirigami_studio.foundation.arrays import ComplexArray, FloatArray, IntArray
-from kirigami_studio.mechanics.bow_contacts import DEEP, HALVINGS, MARGIN, Meetings, deepest, panel_areas, without_bends
+from kirigami_studio.mechanics.bow_contacts import HALVINGS, MARGIN, Meetings, deepest, panel_areas, without_bends
 from kirigami_studio.mechanics.closing import Closing
 
 #: Mean void angle (radians) below which panels are tried: in flatter sheets they are where they were cut.
@@ -56,8 +56,7 @@ class _ClosingPath:
         areas = panel_areas([panels[number] for number in numbers.tolist()], kerf_mm)
         self._joined = np.searchsorted(numbers, connectors.panels)
         self._rigid = without_bends(areas, self._joined, connectors, kerf_mm)
-        deep = DEEP * float(connectors.width_mm.mean())
-        self._less = shapely.buffer(self._rigid, -0.5 * deep, join_style="mitre")
+        self._less = shapely.buffer(self._rigid, -0.5 * connectors.meeting_mm, join_style="mitre")
         self._stops = network.stops
 
     def steps(self) -> dict[tuple[int, int], int]:

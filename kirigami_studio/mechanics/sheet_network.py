@@ -10,7 +10,7 @@ import numpy as np
 
 from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import MechanicsError
-from kirigami_studio.mechanics.bow_contacts import DEEP, MARGIN, Meetings
+from kirigami_studio.mechanics.bow_contacts import MARGIN, Meetings
 from kirigami_studio.mechanics.connectors import (
     ElasticSheet,
     SheetConnectors,
@@ -132,7 +132,7 @@ def _stops(meetings: Meetings, connectors: SheetConnectors, sheet: ElasticSheet,
         ligament=at,
         turned=connectors.sign[at] * (math.pi - meetings.angle - MARGIN),
         stiffness=np.full(len(at), sheet.young_mpa * sheet.thickness_mm),
-        soft=np.full(len(at), DEEP * float(connectors.width_mm.mean())),
+        soft=np.full(len(at), connectors.meeting_mm),
     )
 
 
