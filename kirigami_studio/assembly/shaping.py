@@ -467,7 +467,7 @@ class Shaping:
         self.bodies[index] = shape
 
     def close_slits(self) -> None:
-        """Close what is narrower than ``SLIT``: sides of additions that meet with nothing between them."""
+        """Close slits narrower than ``SLIT``, left where sides of additions meet."""
         closed = shapely.buffer(shapely.buffer(self.bodies, SLIT, join_style="mitre"), -SLIT, join_style="mitre")
         slit = shapely.length(self.bodies) - shapely.length(closed) > SLIT_LENGTH
         self.bodies[slit] = closed[slit]

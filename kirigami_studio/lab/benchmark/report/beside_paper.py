@@ -227,7 +227,7 @@ def _aligned_rows(figures: Figures | None, generators: Sequence[Figures]) -> Ite
 
 
 def _at_its_variation(snapshots: Sequence[Figures]) -> Iterator[str]:
-    """What a run of GRPO had reached before its end, where its total variation was nearest the paper's."""
+    """Match of the weights on the way of a GRPO run whose total variation is nearest the paper's."""
     paper = snapshots[-1]["paper"]
     if paper and paper.get("tv"):
         nearest = min(snapshots, key=lambda row: abs(float(row["tv"]) - float(paper["tv"])))

@@ -65,7 +65,7 @@ def is_replaced(start: str, settings: Figures) -> bool:
 
 
 def start_of(start: str, settings: Figures, generators: Sequence[Figures] = ()) -> str:
-    """Name of the weights that a run of GRPO began with: bundled, earlier, or those of a row of Table 2."""
+    """Name of the weights before a run of GRPO: bundled, earlier, or a row of Table 2."""
     if is_replaced(start, settings):
         return f"an earlier {start.removeprefix('bundled ')}"
     rows = {digest: name for figures in generators for name, digest in figures["weights"].items()}

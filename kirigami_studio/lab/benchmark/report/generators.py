@@ -89,7 +89,7 @@ def _short_of_budget(figures: Figures) -> str:
 
 
 def grpo_section(figures: Figures, generators: Sequence[Figures], pictures: dict[str, bytes]) -> Iterator[str]:
-    """The paper's Table 3: what GRPO made of priors, which may be rows of Table 2, beside a control without reward."""
+    """The paper's Table 3: GRPO from priors, some of them rows of Table 2, and a control."""
     settings = figures["settings"]
     began = {
         start: start_of(start, next(iter(training.values())), generators)
