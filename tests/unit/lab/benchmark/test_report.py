@@ -100,6 +100,8 @@ def test_that_the_report_in_the_docs_is_that_of_its_runs_and_its_counts_stand_am
     (measured,) = (line for line in (docs / "measured.md").read_text().splitlines() if "Tables 1 to 3" in line)
     counts = re.findall(r"\d+ of \d+", first)
     assert len(counts) == 3 and counts == re.findall(r"\d+ of \d+", measured)
+    (quoted,) = (line for line in (docs.parent / "README.md").read_text().splitlines() if "like for like" in line)
+    assert counts[:2] == re.findall(r"\d+ of \d+", quoted)
 
 
 def test_that_rows_of_weights_that_are_no_longer_bundled_are_named() -> None:
