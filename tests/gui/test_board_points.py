@@ -288,7 +288,7 @@ def test_that_the_axis_goes_through_the_middle_of_a_target_that_is_opened(plate:
     assert context.mirror.at == pytest.approx((25, 10))
     plate.services.targeting.open("heart")
     until(lambda: bool(asked(plate)))
-    answer(plate, "Replace")
+    answer(plate, "Replace", until)
     assert plate.session.document.target is not None and plate.session.document.target.name == "heart"
     ring = placed(plate).ring
     assert context.mirror.at == pytest.approx(tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0))))
@@ -303,7 +303,7 @@ def test_that_the_axis_goes_through_the_middle_of_a_photo_that_is_opened_and_sta
     plate.target.tools.axis.set_axis(Axis.BOTH)
     targeting.open(str(photo))
     until(lambda: bool(asked(plate)))
-    answer(plate, "Replace")
+    answer(plate, "Replace", until)
     until(lambda: plate.target.threshold.isVisible())
     ring = placed(plate).ring
     middle = tuple(0.5 * (ring.min(axis=0) + ring.max(axis=0)))

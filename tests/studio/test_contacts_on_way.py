@@ -14,6 +14,7 @@ from kirigami_studio.foundation.arrays import FloatArray
 from kirigami_studio.foundation.steps import result_of
 from kirigami_studio.mechanics.bow_contacts import MARGIN
 from kirigami_studio.mechanics.closing import Closing, closing
+from kirigami_studio.mechanics.connectors import SheetConnectors
 from kirigami_studio.mechanics.network import Stops
 from kirigami_studio.mechanics.path_contacts import contacts_on_way
 from kirigami_studio.project.store import load
@@ -83,11 +84,15 @@ def test_that_a_corner_which_comes_round_the_end_of_an_edge_is_stopped_from_wher
     motion[:, 1, :2] = shifts
     opening = np.linspace(0.0, 0.9 * math.pi, len(shifts))
     centroids = np.array([shapely.Polygon(panel).centroid.coords[0] for panel in (edge, spike, third)])
-    connectors = SimpleNamespace(
+    connectors = SheetConnectors(
         panels=np.array([[0, 2], [1, 2]]),
-        width_mm=np.full(2, 0.2),
-        longer_mm=np.zeros(2),
         centres=np.full((2, 2, 2), 100.0),
+        along=np.array([[1.0, 0.0]] * 2),
+        width_mm=np.full(2, 0.2),
+        flexure_mm=np.full(2, 0.3),
+        longer_mm=np.zeros(2),
+        sign=np.ones(2),
+        touch=np.zeros(2),
     )
     network = SimpleNamespace(panel_count=3, numbers=None, centroids=centroids, stops=Stops.none())
     sheet = SimpleNamespace(network=network, connectors=connectors, opening=lambda moved: np.stack([opening] * 2, 1))
