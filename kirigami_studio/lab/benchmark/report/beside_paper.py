@@ -14,14 +14,17 @@ from kirigami_studio.lab.benchmark.paper_tables import GRPO_CALLS, TRAINING_BATC
 from kirigami_studio.lab.benchmark.report.cells import Figures, is_replaced, measured, share, start_of
 
 MIXED = "mixed"
+#: Pixels each way, with which networks for 10 x 10 ratios smooth their fields.
+COARSE = 16
 SOLVER = (
     "run with the paper's settings as far as it gives them; how its targets and its measure differ from these is not "
     "known, see *Table 1*"
 )
-FALLS = (
-    "its match on validation falls while it is trained, see *Training*: the divergence of latent numbers from those "
-    "that samples draw weighs 1e-4, as in the paper (*cvae-kl-0.03* differs in nothing but this weight and its steps)"
-)
+#: Why a network's match falls while it is trained, where a run of *Training* shows it.
+SHOWN = {
+    "cvae": "the divergence of latent numbers from those that samples draw weighs 1e-4, as in the paper "
+    "(*cvae-kl-0.03* differs in nothing but this weight and its steps)",
+}
 START = (
     "what the run began with decides the level; *over start* and *over control* tell what the reward did, see *Table 3*"
 )
@@ -191,8 +194,14 @@ def _generator_rows(figures: Figures, falling: Collection[str]) -> Iterator[Comp
             trained = figures.get("trained", {}).get(name)
             causes = ["how it was trained is not recorded"] if trained is None else _causes(trained, family)
             why = list(causes)
+            if trained is not None and trained["latent"] == COARSE:
+                why.append(
+                    f"fields are resized to {COARSE} x {COARSE} pixels, which smooths the checkerboard that makes the "
+                    "shape"
+                )
             if name in falling:
-                why.append(FALLS)
+                falls = "its match on validation falls while it is trained, see *Training*"
+                why.append(f"{falls}: {SHOWN[name]}" if name in SHOWN else falls)
             yield from _row("2, generators", family, name, found, row, "; ".join(causes), "; ".join(why))
 
 

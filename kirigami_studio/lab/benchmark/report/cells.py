@@ -10,6 +10,8 @@ from kirigami_studio.generator.weights import digest_of, variants
 
 #: JSON of a suite, as it comes from its file.
 Figures = dict[str, Any]
+#: Stands beside tables for which :func:`is_earlier` holds.
+EARLIER = "An earlier run: the released code's measure was not taken in it."
 
 
 def share(value: float, digits: int = 1) -> str:
@@ -50,6 +52,11 @@ def seeds_of(figures: Figures) -> str:
     """The seeds of a call, as a table's title has them."""
     seeds = figures["seeds"]
     return f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}"
+
+
+def is_earlier(figures: Figures) -> bool:
+    """Whether figures of a suite lack the released code's measure."""
+    return any(table.get("uniform_siou_released") is None for table in figures["families"].values())
 
 
 def rows_of_older_weights(measured: Mapping[str, str]) -> list[str]:

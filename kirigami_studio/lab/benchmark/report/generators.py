@@ -8,9 +8,11 @@ from itertools import pairwise
 from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
 from kirigami_studio.lab.benchmark.paper_tables import TRAINING_BATCH, TRAINING_STEPS
 from kirigami_studio.lab.benchmark.report.cells import (
+    EARLIER,
     Figures,
     beside,
     interval,
+    is_earlier,
     measured,
     points,
     rows_of_older_weights,
@@ -46,6 +48,8 @@ def _generator_tables(figures: Figures, pictures: dict[str, bytes]) -> Iterator[
             f"Measured before the bundled weights were trained anew: {', '.join(older)}. "
             "The model card has the figures of those that are bundled now."
         )
+    if is_earlier(figures):
+        notes.append(EARLIER)
     if short := _short_of_budget(figures):
         notes.append(f"Trained on less than the paper's {TRAINING_STEPS} steps of {TRAINING_BATCH}: {short}.")
     for family, table in figures["families"].items():
@@ -105,6 +109,9 @@ def grpo_section(figures: Figures, generators: Sequence[Figures], pictures: dict
         f"|d log10 x| of neighbours, *distance* as in Table 2 with {settings['k']} samples. "
         "`kirigami-studio benchmark grpo RUN ...`"
     )
+    if is_earlier(figures):
+        yield ""
+        yield EARLIER
     for family, table in figures["families"].items():
         for start, runs in table["starts"].items():
             yield ""

@@ -6,9 +6,11 @@ from collections.abc import Iterator, Sequence
 
 from kirigami_studio.lab.benchmark.line_chart import Curve, LineChart
 from kirigami_studio.lab.benchmark.report.cells import (
+    EARLIER,
     Figures,
     beside,
     interval,
+    is_earlier,
     measured,
     seeds_of,
     share,
@@ -58,6 +60,9 @@ def _solver_tables(figures: Figures) -> Iterator[str]:
                 f"{row['evaluations']:.0f}{beside(paper, 'evaluations', 1.0, 0)} | {row['seconds']:.2f} | "
                 f"{row['no_candidate'] or ''} |"
             )
+    if is_earlier(figures):
+        yield ""
+        yield EARLIER
 
 
 def best_of_k_section(figures: Figures, pictures: dict[str, bytes]) -> Iterator[str]:

@@ -76,15 +76,19 @@ def test_that_solvers_count_like_for_like_and_samples_of_the_bundled_prior_do_no
 
 def test_that_reasons_come_from_how_a_network_was_trained() -> None:
     trained = {
-        "cvae": {**AT_BUDGET, "family": "mixed", "steps": 3000},
+        "cvae": {**AT_BUDGET, "family": "mixed", "steps": 3000, "latent": 16},
         "fine": {**AT_BUDGET, "steps": 3000},
+        "slow": AT_BUDGET,
         "paper": AT_BUDGET,
     }
     rows = {name: row(0.7, 0.84) for name in trained}
-    lines = list(beside_paper_section(rows_beside_paper([], [suite("released", rows, trained)], None, {"cvae"})))
+    lines = list(
+        beside_paper_section(rows_beside_paper([], [suite("released", rows, trained)], None, {"cvae", "slow"}))
+    )
     reasons = {line.partition(" ")[2].partition(" ")[0]: line for line in lines if line.startswith("- ")}
-    assert all(part in reasons["cvae"] for part in ("3000 of 31250", "mixture", "falls"))
-    assert "falls" not in reasons["fine"]
+    assert all(part in reasons["cvae"] for part in ("3000 of 31250", "mixture", "16 x 16", "falls", "divergence"))
+    assert "16 x 16" not in reasons["fine"] and "falls" not in reasons["fine"]
+    assert "falls" in reasons["slow"] and "divergence" not in reasons["slow"]
     assert "not looked into" in reasons["paper"]
     logs = {
         "up": [{"structured_iou": 0.6}, {"structured_iou": 0.7}],
@@ -104,8 +108,8 @@ def test_that_tables_of_several_runs_stand_in_one_report_with_a_dash_where_a_mea
     text = made_from(tmp_path).text
     table_2 = text.partition("## Table 2")[2]
     newer, older = table_2.partition("Sobol, 7 targets")[::2]
-    assert "| uniform sheet | | 75.2 | | 88.4 |" in newer and "| 97.6 |" in newer
-    assert "| uniform sheet | | 75.2 | | - |" in older and older.startswith("; seed 0")
+    assert "| uniform sheet | | 75.2 | | 88.4 |" in newer and "| 97.6 |" in newer and "earlier run" not in newer
+    assert "| uniform sheet | | 75.2 | | - |" in older and older.startswith("; seed 0") and "earlier run" in older
     assert "| 2, generators | released | 7 | paper | 75.2 | 97.0 | 97.6 | 94.2 | +2.8 | yes |" in text
     assert "| 2, generators | sobol | 7 | cgan | 75.2 | 89.0 | - | 87.6 |" in text
     first = text.split("\n\n")[1]
