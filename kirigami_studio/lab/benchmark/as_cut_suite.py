@@ -22,6 +22,7 @@ from kirigami_studio.export.verification import file_voids, verify_export
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
 from kirigami_studio.foundation.errors import KirigamiError
 from kirigami_studio.foundation.steps import result_of
+from kirigami_studio.lab.paper_evaluator import released_match
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.mechanics.network import CONTACT_BELOW
 from kirigami_studio.outlines.outline import Outline
@@ -62,8 +63,10 @@ class SheetAsCut:
     stretch, stretch_before_contact : float
         Largest stretch of a connector on the way to 2 degrees, and until the first panels press on each other, in its
         widths.
-    iou, iou_as_cut : float
-        Exact IoU of the design, and of the sheet where it comes to.
+    iou, iou_as_cut, uniform_iou : float
+        Exact IoU of the design, of the sheet where it comes to, and of the uniform sheet.
+    siou_released : float
+        sIoU of the design as the paper's released code measures it.
     """
 
     name: str
@@ -80,6 +83,8 @@ class SheetAsCut:
     stretch_before_contact: float
     iou: float
     iou_as_cut: float
+    uniform_iou: float
+    siou_released: float
 
     @property
     def row(self) -> str:
@@ -196,4 +201,6 @@ def cut_sheet(
         stretch_before_contact=float(stretch[free].max(initial=0.0)),
         iou=math.nan if sheet.as_cut.ideal_iou is None else sheet.as_cut.ideal_iou,
         iou_as_cut=math.nan if sheet.as_cut.iou is None else sheet.as_cut.iou,
+        uniform_iou=best.score.uniform_iou,
+        siou_released=released_match(motion, target),
     )

@@ -23,6 +23,8 @@ from kirigami_studio.outlines.outline import Outline
 SAMPLING = ("sample", "sample-fit")
 SEARCHING = ("swarm", "cma-es")
 METHODS = (*SAMPLING, *SEARCHING)
+#: What counts of the best run: the first feasible, then by sIoU.
+BEST = ("feasible", "siou", "siou_released", "iou_exact", "uniform_siou", "uniform_siou_released")
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +34,10 @@ class BestOfK:
     Attributes
     ----------
     k : int
-    siou, iou_exact, success : float
+    siou, siou_released, iou_exact, success : float
+        ``siou_released`` as the authors' released code measures.
+    uniform_siou, uniform_siou_released : float
+        The same two of the uniform sheet.
     siou_interval : (float, float)
         Bootstrap 95 % interval over targets.
     evaluations, seconds : float
@@ -44,6 +49,9 @@ class BestOfK:
     k: int
     siou: float
     siou_interval: tuple[float, float]
+    siou_released: float
+    uniform_siou: float
+    uniform_siou_released: float
     iou_exact: float
     success: float
     evaluations: float
@@ -53,9 +61,10 @@ class BestOfK:
 
 @dataclass(frozen=True, slots=True)
 class BestOfKFigures:
-    """The curves by family and method, and what their runs share."""
+    """The curves by family and method, the number of targets by family, and what their runs share."""
 
     settings: dict[str, object]
+    targets: dict[str, int]
     families: dict[str, dict[str, tuple[BestOfK, ...]]]
 
     def sentences(self) -> Iterator[str]:
@@ -126,7 +135,8 @@ def measure_best_of_k(
         }
         for family, outlines in targets.items()
     }
-    return BestOfKFigures(settings.to_json(), families)
+    counts = {family: len(outlines) for family, outlines in targets.items()}
+    return BestOfKFigures(settings.to_json(), counts, families)
 
 
 def _runs(method: str, family: str, number: int, target: Outline, sizes: Sequence[int]) -> Iterator[SolverRun]:
@@ -148,11 +158,14 @@ def _records(method: str, family: str, number: int, target: Outline, k: int, sto
 def _at(method: str, k: int, by_target: Sequence[Sequence[Record]]) -> BestOfK:
     """One point of a curve."""
     table = np.array([_best(records) for records in by_target])
-    siou, exact, feasible, evaluations, seconds = table.T
+    feasible, siou, released, exact, floor, released_floor, evaluations, seconds = table.T
     return BestOfK(
         k=k,
         siou=float(siou.mean()),
         siou_interval=bootstrap_interval(siou),
+        siou_released=float(released.mean()),
+        uniform_siou=float(floor.mean()),
+        uniform_siou_released=float(released_floor.mean()),
         iou_exact=float(exact.mean()),
         success=float(((siou >= SUCCESS_SIOU) & (feasible > 0.0)).mean()),
         evaluations=float(evaluations.mean()),
@@ -162,8 +175,7 @@ def _at(method: str, k: int, by_target: Sequence[Sequence[Record]]) -> BestOfK:
 
 
 def _best(records: Sequence[Record]) -> tuple[float, ...]:
-    """sIoU, exact IoU and feasibility of the best run, evaluations and seconds of all."""
-    names = ("feasible", "siou", "iou_exact", "evaluations", "seconds")
-    values = np.array([[record[name] for name in names] for record in records], dtype=np.float64)
-    feasible, siou, exact = max(values[:, :3].tolist())
-    return siou, exact, feasible, values[:, 3].sum(), values[:, 4].sum()
+    """What the best run has, by the names of ``BEST``, and evaluations and seconds of all."""
+    values = np.array([[record[name] for name in (*BEST, "evaluations", "seconds")] for record in records], dtype=float)
+    *best, _, _ = max(values.tolist())
+    return *best, *values[:, -2:].sum(axis=0)

@@ -16,6 +16,8 @@ from kirigami_studio.export.picture import PictureFrame, draw_polygons
 from kirigami_studio.foundation.processes import HERE, Workers, ordered_results_of
 from kirigami_studio.lab.benchmark.contact_sheet import Tile, write_tiles
 from kirigami_studio.lab.benchmark.generator_suite import SUCCESS_SIOU, bootstrap_interval
+from kirigami_studio.lab.paper_evaluator import released_match
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.auto_grid import known_for
 from kirigami_studio.pipeline.pool import Pool
@@ -179,11 +181,14 @@ def shape_figures(one: Made) -> dict[str, object]:
     """The line of one target."""
     score = one.closed.score
     symmetry, even, most = one.closed.symmetry, score.evenness, one.best_match.score
+    sheet = one.closed.final_sheet
     line: dict[str, object] = {
         "grid": f"{one.request.chosen_grid[0]}x{one.request.chosen_grid[1]}",
         "iou_exact": score.iou_exact,
         "siou": score.siou,
+        "siou_released": released_match(deploy(sheet), one.target),
         "uniform_siou": score.uniform_siou,
+        "uniform_siou_released": released_match(deploy(sheet.plain()), one.target),
         "uniform_iou": score.uniform_iou,
         "siou_gain": score.siou_gain,
         "tv": score.tv,

@@ -57,6 +57,7 @@ class SweepPoint:
 
     method: str
     siou: float
+    siou_released: float
     iou_exact: float
     success: float
     evaluations: float
@@ -94,6 +95,7 @@ class SizeFigures:
 
     size: int
     uniform_siou: float
+    uniform_siou_released: float
     points: tuple[SweepPoint, ...]
     marching: Marching
 
@@ -219,11 +221,13 @@ def _size(size: int, runs: Sequence[SweepRun], methods: Sequence[str], store: Ru
                 SweepPoint(
                     method,
                     mean_of(records, "siou"),
+                    mean_of(records, "siou_released"),
                     mean_of(records, "iou_exact"),
                     success_share(records),
                     mean_of(records, "evaluations"),
                     mean_of(records, "seconds"),
                 )
             )
-    uniform = mean_of([store.records[run.key] for run in runs], "uniform_siou")
-    return SizeFigures(size, uniform, tuple(points), measure_marching(size))
+    found = [store.records[run.key] for run in runs]
+    floor, released = mean_of(found, "uniform_siou"), mean_of(found, "uniform_siou_released")
+    return SizeFigures(size, floor, released, tuple(points), measure_marching(size))

@@ -8,7 +8,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+import shapely
 
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.lab.paper_evaluator import released_match
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of
@@ -44,8 +48,14 @@ class LiteratureRow:
     first, most : float
         Exact IoU of the first design by default, which has even panels, too; and of the feasible one of both runs that
         matches best.  In half open sheets the open notches of the rim are no part of the shape.
+    uniform : float
+        Exact IoU of the uniform sheet in the same state.
+    released : float or None
+        sIoU of the first as the paper's released code measures it, which knows closed sheets only.
     first_cv, most_cv : float
         Coefficients of variation of their panel areas.
+    first_rim_off, most_rim_off : float
+        Of the rim's nodes, see :func:`rim_off`.
     published : float or None
         Exact IoU of the published sheet with as many panels.
     processor_seconds : float
@@ -54,10 +64,14 @@ class LiteratureRow:
     target: str
     state: str
     panels: int
+    uniform: float
     first: float
     most: float
+    released: float | None
     first_cv: float
     most_cv: float
+    first_rim_off: float
+    most_rim_off: float
     published: float | None
     processor_seconds: float
 
@@ -96,16 +110,41 @@ def design_literature(
                 target.name,
                 state,
                 (size + 1) ** 2,
+                result.best.score.uniform_iou,
                 result.best.score.iou_exact,
                 most.score.iou_exact,
+                None if STATES[state] else released_match(deploy(result.best.final_sheet), target),
                 result.best.score.evenness.area_cv,
                 most.score.evenness.area_cv,
+                rim_off(result.best, target),
+                rim_off(most, target),
                 PUBLISHED.get((target.name, size, state)),
                 time.process_time() - began,
             )
         )
     report(len(tasks), len(tasks))
     return found
+
+
+def rim_off(design: Candidate, target: Outline) -> float:
+    """Mean distance of the rim's nodes from the target's outline, in the design's pose, what Choi et al. (2019) fit.
+
+    The nodes are the corners of panels that stick out on the sheet's edge while it is half open; the bottoms of its
+    notches are none.
+
+    Returns
+    -------
+    distance : float
+        In square roots of the target's area.
+    """
+    motion, phi = deploy(design.final_sheet), design.final_phi
+    loop = motion.topology.outline_nodes
+    half = motion.nodes(STATES["half"])[loop]
+    before, after = half - np.roll(half, 1, axis=0), np.roll(half, -1, axis=0) - half
+    sticks_out = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] > 0.0
+    nodes = design.score.transform.apply(motion.nodes(phi)[loop[sticks_out]])
+    curve = shapely.linearrings(target.points)
+    return float(shapely.distance(shapely.points(nodes), curve).mean())
 
 
 def literature_figures(rows: Sequence[LiteratureRow]) -> dict[str, object]:
@@ -124,11 +163,12 @@ def literature_figures(rows: Sequence[LiteratureRow]) -> dict[str, object]:
 
 def literature_sentences(rows: Sequence[LiteratureRow]) -> Iterator[str]:
     """A table for people."""
-    yield "target                 state   panels  first, %    CV  most, %    CV  published    s"
+    yield "target                 state   panels  uniform, %  first, %    CV  most, %    CV  published    s"
     for row in rows:
         beside = "" if row.published is None else f"{100 * row.published:.1f}"
         yield (
-            f"{row.target:22} {row.state:7} {row.panels:6d} {100 * row.first:9.2f} {row.first_cv:5.2f}"
+            f"{row.target:22} {row.state:7} {row.panels:6d} {100 * row.uniform:11.2f} {100 * row.first:9.2f} "
+            f"{row.first_cv:5.2f}"
             f" {100 * row.most:8.2f} {row.most_cv:5.2f} {beside:>10} {row.processor_seconds:4.0f}"
         )
     figures = literature_figures(rows)

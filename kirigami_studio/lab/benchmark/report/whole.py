@@ -21,7 +21,7 @@ from kirigami_studio.lab.benchmark.report.beside_paper import (
 )
 from kirigami_studio.lab.benchmark.report.cells import Figures, by_family
 from kirigami_studio.lab.benchmark.report.generators import generator_section, grpo_section, training_section
-from kirigami_studio.lab.benchmark.report.others import leaderboard_section, literature_section
+from kirigami_studio.lab.benchmark.report.others import leaderboard_section, literature_section, pairs_section
 from kirigami_studio.lab.benchmark.report.sheets import as_cut_section, shapes_section
 from kirigami_studio.lab.benchmark.report.solvers import best_of_k_section, grid_sweep_section, solver_section
 
@@ -36,8 +36,9 @@ MACHINE = Path("machine.json")
 #: Folder of training runs, each with a ``log.jsonl`` and an ``about.json``, and of what ``benchmark designs`` wrote: a
 #: JSON file for each set of shapes, with its picture.
 TRAINING, SHAPES = Path("training"), Path("shapes")
-#: Where calls of ``benchmark literature`` wrote, such as ``literature-more.json``; and what ``benchmark judge`` keeps.
-LITERATURE, LEADERBOARD = "literature*.json", Path("leaderboard.json")
+#: Where calls of ``benchmark literature`` wrote, such as ``literature-more.json``, the one of ``benchmark starts``, and
+#: what ``benchmark judge`` keeps.
+LITERATURE, STARTS, LEADERBOARD = "literature*.json", Path("starts.json"), Path("leaderboard.json")
 #: In the folder of a training run: its settings and the size of its network.
 ABOUT = "about.json"
 
@@ -126,9 +127,10 @@ def made_from(folder: Path) -> Report:
         published = [figures for figures in map(_read, sorted(folder.glob(LITERATURE))) if figures is not None]
         if published:
             lines += literature_section(published)
-        board = _read(folder / LEADERBOARD)
-        if board is not None:
-            lines += leaderboard_section(board)
+        for name, tables in ((STARTS, pairs_section), (LEADERBOARD, leaderboard_section)):
+            figures = _read(folder / name)
+            if figures is not None:
+                lines += tables(figures)
         if len(lines) == opening:
             raise KirigamiError("benchmark.nothing_to_report", path=folder)
     except (KeyError, TypeError, ValueError, AttributeError) as error:

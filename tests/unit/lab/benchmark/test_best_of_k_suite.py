@@ -49,6 +49,7 @@ def test_that_more_runs_are_never_worse_and_cost_more(figures: BestOfKFigures) -
     assert curves["swarm"][0].siou < curves["swarm"][2].siou
     assert curves["sample-fit"][2].siou > curves["swarm"][2].siou
     assert (curves["swarm"][0].paper_siou, curves["cma-es"][2].paper_siou) == (0.926, None)
+    assert figures.targets == {"reachable": 2}
     assert any(line.split()[:2] == ["sample", "4"] and "(96.0)" in line for line in figures.sentences())
 
 
@@ -61,6 +62,9 @@ def test_that_a_point_is_the_best_of_its_runs(
         for number, target in enumerate(targets["reachable"])
     ]
     assert at.siou == pytest.approx(np.mean([max(run["siou"] for run in runs) for runs in found]))
+    best = [max(runs, key=lambda run: run["siou"]) for runs in found]
+    for name in ("siou_released", "uniform_siou", "uniform_siou_released", "iou_exact"):
+        assert getattr(at, name) == pytest.approx(np.mean([run[name] for run in best])) and getattr(at, name) > 0.5
     assert at.evaluations == pytest.approx(np.mean([sum(run["evaluations"] for run in runs) for runs in found]))
 
 

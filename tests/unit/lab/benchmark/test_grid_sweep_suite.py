@@ -26,6 +26,7 @@ def test_that_sizes_are_swept_and_solvers_end_where_the_papers_figure_does(monke
     assert (large.size, [point.method for point in large.points]) == (6, ["fit"])
     assert small.points[1].evaluations == 24.0
     assert large.points[0].siou > large.uniform_siou
+    assert large.points[0].siou_released > large.uniform_siou_released > large.uniform_siou
     assert len(store.records) == 6
     assert figures.targets == ("heart", "circle")
     assert any(line.startswith("4 x 4: uniform sheet") for line in figures.sentences())

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from kirigami_studio.lab.benchmark.literature_suite import (
     PUBLISHED,
     design_literature,
@@ -28,6 +30,10 @@ def test_that_a_half_open_circle_is_set_beside_the_published_one() -> None:
     assert closed.panels == half.panels == 36
     # A sheet that is closed again has no notches in its rim.
     assert 0.85 < half.most < closed.first <= closed.most <= 1.0
+    assert closed.released == pytest.approx(closed.first, abs=0.01) and half.released is None
+    assert closed.uniform < closed.first and half.uniform < half.first
+    # Nodes of the rim lie near the curve; those of a uniform square's corners would be 0.1 off it.
+    assert all(0.0 < row.first_rim_off < 0.04 for row in rows)
     figures = literature_figures(rows)
     assert figures["published"] == 1 and figures["most_ahead"] == int(half.most > 0.912)
     assert len(list(literature_sentences(rows))) == 4

@@ -15,8 +15,14 @@ def literature_row(
         "target": target,
         "state": state,
         "panels": panels,
+        "uniform": 0.8,
         "first": first,
         "most": first + 0.01,
+        "released": 0.975 if state == "closed" else None,
+        "first_cv": 0.4,
+        "most_cv": 0.5,
+        "first_rim_off": 0.02,
+        "processor_seconds": 3.0,
         "published": published,
     }
 
@@ -28,8 +34,23 @@ def test_that_published_sheets_stand_beside_ours_from_all_calls(tmp_path: Path) 
     (tmp_path / "literature-more.json").write_text(json.dumps({"each": more}))
     text = made_from(tmp_path).text
     assert "Ahead of 1 (first) and 2 (best) of 2 published sheets" in text
-    assert "| star | half open |  |  | **86.8** (87.8) | 86.1 | **89.0** (90.0) |  |" in text
-    assert "| circle | closed | **97.0** (98.0) | 97.5 |  |  |  |  |" in text
+    assert "| star | half open | 36 | 86.1 | 80.0 | **86.8** | - | 87.8 | 0.40 | 0.50 | 2.0 | 3.0 |" in text
+    assert "| circle | closed | 25 | 97.5 | 80.0 | **97.0** | 97.5 | 98.0 | 0.40 | 0.50 | 2.0 | 3.0 |" in text
+    assert "| half open | 64 | 1 | 80.0 | **89.0** |" in text
+    assert "| star | half open |  | **86.8** (87.8) | **89.0** (90.0) |" in text
+    assert "| circle | closed | **97.0** (98.0) |  |  |" in text
+
+
+def test_that_pairs_of_shapes_stand_by_start_and_target(tmp_path: Path) -> None:
+    pairs = [
+        {"start": start, "target": target, "iou_exact": iou, "uniform_iou": 0.75}
+        for start, target, iou in (("circle", "star", 0.99), ("heart", "star", 0.985), ("circle", "drop", 0.991))
+    ]
+    pairs.append(pairs[-1] | {"start": "heart", "iou_exact": 0.98})
+    means = {"start_error_worst": 0.005, "iou_exact": 0.9865, "iou_exact_worst": 0.98, "panel_area_cv": 0.5}
+    (tmp_path / "starts.json").write_text(json.dumps({**means, "processor_seconds": 4.0, "each": pairs}))
+    text = made_from(tmp_path).text
+    assert "| heart | **98.5** (75.0) | **98.0** (75.0) |" in text and "worst 98.0" in text
 
 
 def test_that_the_leaderboard_has_a_table_for_each_set_best_first(tmp_path: Path) -> None:
