@@ -36,7 +36,7 @@ OVERLAP = 2.0
 
 @dataclass(frozen=True, slots=True)
 class PaperScore:
-    """Score and checks of one design at phi = 0.
+    """Score, checks and reward of one design at phi = 0.
 
     Attributes
     ----------

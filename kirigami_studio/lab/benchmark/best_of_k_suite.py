@@ -61,7 +61,7 @@ class BestOfK:
 
 @dataclass(frozen=True, slots=True)
 class BestOfKFigures:
-    """The curves by family and method, the number of targets by family, and what their runs share."""
+    """The curves by family and method, the targets of each family, and shared settings."""
 
     settings: dict[str, object]
     targets: dict[str, int]
@@ -175,7 +175,7 @@ def _at(method: str, k: int, by_target: Sequence[Sequence[Record]]) -> BestOfK:
 
 
 def _best(records: Sequence[Record]) -> tuple[float, ...]:
-    """What the best run has, by the names of ``BEST``, and evaluations and seconds of all."""
+    """Figures ``BEST`` of the best run, then evaluations and seconds of all."""
     values = np.array([[record[name] for name in (*BEST, "evaluations", "seconds")] for record in records], dtype=float)
     *best, _, _ = max(values.tolist())
     return *best, *values[:, -2:].sum(axis=0)

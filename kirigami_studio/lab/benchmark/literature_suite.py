@@ -127,10 +127,10 @@ def design_literature(
 
 
 def rim_off(design: Candidate, target: Outline) -> float:
-    """Mean distance of the rim's nodes from the target's outline, in the design's pose, what Choi et al. (2019) fit.
+    """Mean distance of the rim's nodes from the target's outline, in the design's pose.
 
-    The nodes are the corners of panels that stick out on the sheet's edge while it is half open; the bottoms of its
-    notches are none.
+    It is what Choi et al. (2019) fit.  The nodes are the corners of panels that stick out on the sheet's edge while it
+    is half open; the bottoms of its notches are none.
 
     Returns
     -------

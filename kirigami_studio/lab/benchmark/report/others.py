@@ -1,4 +1,4 @@
-"""Sections on other work: published targets, pairs of shapes, and the leaderboard of generators."""
+"""Sections on published targets, pairs of shapes, and the leaderboard."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ STATES = {"closed": "closed", "half": "half open"}
 
 
 def literature_section(calls: Sequence[Figures]) -> Iterator[str]:
-    """Targets of the literature from the calls of ``benchmark literature``: beside published sheets, means, and all."""
+    """Targets of the literature: beside published sheets, means, and each."""
     rows = [row for call in calls for row in call["each"]]
     compared = [row for row in rows if row["published"] is not None]
     first, most = (sum(row[name] > row["published"] for row in compared) for name in ("first", "most"))

@@ -43,7 +43,7 @@ def shapes_section(sets: Mapping[str, Figures]) -> Iterator[str]:
 
 
 def _cover(row: Figures) -> str:
-    """Match of the first design that covers its target, and what falls off; nothing where there is none."""
+    """Match of the first design that covers its target, and what falls off."""
     cover = row.get("cover")
     return "" if cover is None else f"{cover['match']:.4f} ({100 * cover['given_up']:.0f} %)"
 
