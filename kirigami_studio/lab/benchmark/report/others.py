@@ -103,7 +103,7 @@ def leaderboard_section(board: Figures) -> Iterator[str]:
     yield "## Leaderboard"
     yield ""
     yield (
-        "Generators judged on the same targets, one field each, best first: ours, the paper's solvers, and yours. "
+        "Generators judged on the same targets, one field each, best first: ours, and yours. "
         "`kirigami-studio benchmark judge MODULE:CALLABLE --leaderboard docs/benchmark/leaderboard.json` adds a row "
         "([data card](data-card.md)); *as released* has its own floor, that of the row *uniform*."
     )
