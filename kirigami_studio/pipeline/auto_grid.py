@@ -72,6 +72,9 @@ UPRIGHT_POSES, UPRIGHT_TRIED = 6, 3
 #: up to the third.  From a disk those of a bone are worth 0.42 on 7 x 7 and 0.83 on 5 x 9 voids, those of eleven other
 #: long shapes 0.77 or more on the predicted grid.
 LONG_TARGET, LOST, LONGER_CELLS, AS_MANY = 0.4, 0.6, 0.65, 0.75
+#: Where less than the first is expected of such a sheet, short fits decide between as many of its grids, those that are
+#: expected to match best; another one than the predicted is taken where it is worth more by the last.
+HARD, ALIKE_TRIED, ALIKE_GAIN = 0.96, 3, 0.015
 #: Phases of such a fit.
 TRIAL = (FitPhase(3, 0.1, 3e-2), FitPhase(3, 0.04, 3e-3), FitPhase(3, 0.01, 1e-3))
 #: Panels of a fitted sheet have hardly any edge or neck below this share of a cell.
@@ -396,9 +399,10 @@ def _tried_upright(request: Request, choice: GridChoice, trials: Trials) -> Grid
         picked = _apart([one for one in near if one.grid[0] * one.grid[1] >= FEWEST_PINNED])[:UPRIGHT_TRIED]
         worth = _worth(request, picked, trials) if len(picked) > 1 else {}
     else:
-        worth = _worth_of_long_cells(request, choice, near, trials)
+        near = [one for one in near if one.start_error <= MOST_START_ERROR_PINNED]
+        worth = _worth_of_long_cells(request, choice, near, trials) or _worth_of_alike(request, choice, near, trials)
     best = max(worth, key=worth.__getitem__, default=None)
-    if best is None or worth[best] < TELLING:
+    if best is None or worth[best] < (TELLING if start.is_plain else LOST):
         return choice
     rows, columns = best.grid
     kept = shared_symmetries(target, best.grid, request.symmetry, start, pinned=True)
@@ -418,13 +422,22 @@ def _worth_of_long_cells(
     if worth[own] >= LOST:
         return {}
     longer = [
-        one
-        for one in near
-        if one.proportion < own.proportion
-        and AS_MANY * own.panels <= one.panels <= own.panels
-        and one.start_error <= MOST_START_ERROR_PINNED
+        one for one in near if one.proportion < own.proportion and AS_MANY * own.panels <= one.panels <= own.panels
     ]
     return worth | _worth(request, longer, trials)
+
+
+def _worth_of_alike(
+    request: Request, choice: GridChoice, near: list[_Candidate], trials: Trials
+) -> dict[_Candidate, float]:
+    """Worth of grids with the start's proportions where little is expected of the predicted one."""
+    square = request.start.proportion(1, 1)
+    alike = [one for one in near if abs(one.proportion - square) <= START_ROOM]
+    picked = sorted(alike, key=lambda one: -one.match)[:ALIKE_TRIED]
+    own = next((one for one in picked if one.grid == choice.grid), None)
+    if choice.predicted_match >= HARD or own is None or len(picked) < 2:
+        return {}
+    return {one: worth - (one is not own) * ALIKE_GAIN for one, worth in _worth(request, picked, trials).items()}
 
 
 def _apart(candidates: Sequence[_Candidate]) -> list[_Candidate]:
@@ -559,7 +572,8 @@ def _candidates(
         for rows in sizes:
             for columns in sizes:
                 grid = rows, columns
-                if pose is None and (rows % 2 or columns % 2):
+                # Few grids of pinned sheets fit another start: odd ones, too.
+                if pose is None and (rows % 2 or columns % 2) and (start.is_plain or coarsest == COARSEST):
                     continue
                 if not low <= math.log((rows + 1) / (columns + 1)) <= high:
                     continue
