@@ -245,7 +245,9 @@ def choose_grid(
     if pinned:
         smallest = min(smallest, MOST_GAP * width_mm / least_gap_mm)
         coarsest, limit = COARSEST_PINNED, min(limit, HIGHEST if upright else FINEST_PINNED)
-    found = list(_candidates(target, figures, poses, limit, start, coarsest=coarsest, upright=upright))
+    # Few grids of sheets in two layers fit another start.
+    odd = upright and not start.is_plain
+    found = list(_candidates(target, figures, poses, limit, start, coarsest=coarsest, upright=upright, odd=odd))
     found = found or _nearest(target, figures, poses, limit, start)
     if upright:
         found = [one for one in found if one.panels <= MOST_PIECES] or [min(found, key=lambda one: one.panels)]
@@ -392,6 +394,7 @@ def _tried_upright(request: Request, choice: GridChoice, trials: Trials) -> Grid
             start_room=LONGER_CELLS,
             coarsest=COARSEST_PINNED,
             upright=True,
+            odd=not start.is_plain,
         )
         if one.width <= widest and one.panels <= MOST_PIECES
     ]
@@ -551,9 +554,11 @@ def _candidates(
     start_room: float = START_ROOM,
     coarsest: int = COARSEST,
     upright: bool = False,
+    odd: bool = False,
 ) -> Iterator[_Candidate]:
     """Grids with the parities of the most specific symmetries.
 
+    Without a symmetry they have even numbers of voids both ways, or ``odd`` ones, too.
     Rectangles of square cells have proportions between the square and the shape's; others those of the start.  Sheets
     for shapes without an axis are wide rather than high, or ``upright``: those whose width limits the number of cells.
     """
@@ -572,8 +577,7 @@ def _candidates(
         for rows in sizes:
             for columns in sizes:
                 grid = rows, columns
-                # Few grids of pinned sheets fit another start: odd ones, too.
-                if pose is None and (rows % 2 or columns % 2) and (start.is_plain or coarsest == COARSEST):
+                if pose is None and (rows % 2 or columns % 2) and not odd:
                     continue
                 if not low <= math.log((rows + 1) / (columns + 1)) <= high:
                     continue

@@ -168,8 +168,11 @@ def test_that_cells_of_a_disk_on_pins_are_long_where_fits_of_a_long_target_are_l
     predicted = predicted_for(request).grid
     assert predicted[0] == predicted[1]
     assert chosen_for(request, trials).grid == ((5, 9) if lost else predicted)
-    long = {(rows, columns) for rows, columns in asked if columns - rows > 1}
-    assert bool(long) is lost and all((rows + 1) * (columns + 1) <= 64 for rows, columns in long)
+    others = set(asked) - {predicted}
+    if lost:
+        assert others and all(rows < columns and (rows + 1) * (columns + 1) <= 64 for rows, columns in others)
+    else:
+        assert all(abs(rows - columns) <= 1 for rows, columns in others), "none of long cells"
 
 
 @pytest.mark.parametrize(("worth", "gained"), [(0.77, True), (0.76, False)])
@@ -182,6 +185,9 @@ def test_that_short_fits_decide_between_grids_of_a_disk_on_pins_where_little_is_
     assert predicted_for(request).grid == (7, 7), "odd grids, too, as few fit"
     choice = chosen_for(request, trials)
     assert choice.grid == ((8, 7) if gained else (7, 7)) and dict(choice.fields)["count"] == 3
+    print_of = Request(load("clover"), None, k=4, polish=0, **(disk | {"two_layers": False}))
+    assert predicted_for(print_of).grid == (6, 6), "prints keep even ones"
+    assert choose_grid(load("cloud"), limit=6, start=start_shape("circle")).grid == (6, 6), "so does one sheet"
     # Of an arrow enough is expected.
     arrow = Request(load("arrow"), None, k=4, polish=0, **disk)
     assert chosen_for(arrow, trials) == predicted_for(arrow)

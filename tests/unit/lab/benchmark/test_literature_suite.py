@@ -13,6 +13,7 @@ from kirigami_studio.lab.benchmark.literature_suite import (
     literature_sentences,
 )
 from kirigami_studio.outlines.read import read_target
+from kirigami_studio.outlines.silhouettes import load
 
 LITERATURE = Path(__file__).parents[3] / "data" / "literature"
 
@@ -32,8 +33,14 @@ def test_that_a_half_open_circle_is_set_beside_the_published_one() -> None:
     assert 0.85 < half.most < closed.first <= closed.most <= 1.0
     assert closed.released == pytest.approx(closed.first, abs=0.01) and half.released is None
     assert closed.uniform < closed.first and half.uniform < half.first
-    # Nodes of the rim lie near the curve; those of a uniform square's corners would be 0.1 off it.
     assert all(0.0 < row.first_rim_off < 0.04 for row in rows)
     figures = literature_figures(rows)
     assert figures["published"] == 1 and figures["most_ahead"] == int(half.most > 0.912)
     assert len(list(literature_sentences(rows))) == 4
+
+
+def test_that_nodes_of_the_rim_lie_on_the_curve_where_the_match_is_whole() -> None:
+    (square,) = design_literature([load("square")], [5], ["closed"], 1, 0)
+    assert square.most == pytest.approx(1.0, abs=1e-6) and square.most_rim_off < 1e-5
+    (open_square,) = design_literature([load("square")], [5], ["half"], 1, 0)
+    assert open_square.most_rim_off > 100 * square.most_rim_off
