@@ -18,9 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import shapely
-from scipy.ndimage import affine_transform, map_coordinates, uniform_filter
+from scipy.ndimage import affine_transform, uniform_filter
 from scipy.optimize import fmin
-from skimage.measure import approximate_polygon, find_contours
+from skimage.measure import find_contours
 
 from kirigami_studio.evaluate.alignment import align
 from kirigami_studio.evaluate.boundary import as_plane, checked_polygon, moments
@@ -250,6 +250,8 @@ class FittedMask:
     #: Plane of ``coverage`` -> plane of the original mask; both in pixels, x right, y up, origin in the lower left
     #: corner of the image.
     to_source: Similarity
+    #: (K, 2) arrays; all contours in (row, column), thinned to the tolerance; closed, the first point repeated.
+    loops: tuple[FloatArray, ...]
 
     @classmethod
     def from_array(cls, mask: npt.ArrayLike, number: int = 1) -> FittedMask:
@@ -273,11 +275,10 @@ class FittedMask:
         if factor > 1.0:
             padded = uniform_filter(padded, size=max(1, round(factor)), mode="constant")
         # Pixel centres of the fitted mask on those of the padded crop; both silhouettes share their middle.
-        row, column = (
-            (np.arange(count) + 0.5 - 0.5 * count) * factor + 0.5 * length - 0.5
-            for count, length in zip(size, padded.shape, strict=True)
-        )
-        sampled = map_coordinates(padded, np.meshgrid(row, column, indexing="ij"), order=1, mode="constant")
+        first = [
+            (0.5 - 0.5 * count) * factor + 0.5 * length - 0.5 for count, length in zip(size, padded.shape, strict=True)
+        ]
+        sampled = affine_transform(padded, [factor, factor], first, tuple(size), order=1)
         coverage = (sampled >= 0.5).astype(np.float64)
         coverage.setflags(write=False)
         if not coverage.any():
@@ -288,7 +289,11 @@ class FittedMask:
             slice(1 - round(before / factor), 1 + round((length - before) / factor))
             for before, length in zip((top, left), source.shape, strict=True)
         )
-        return cls(coverage, (canvas[0], canvas[1]), Similarity(factor, 0.0, (shift.real, shift.imag)))
+        to_source = Similarity(factor, 0.0, (shift.real, shift.imag))
+        # scikit-image 0.26 ships this without annotations; GEOS thins contours 20 times as fast.
+        contours = find_contours(coverage, 0.5)  # type: ignore[no-untyped-call]
+        thinned = (shapely.LineString(loop).simplify(CONTOUR_TOLERANCE, preserve_topology=False) for loop in contours)
+        return cls(coverage, (canvas[0], canvas[1]), to_source, tuple(map(shapely.get_coordinates, thinned)))
 
     @property
     def key(self) -> tuple[float, tuple[int, ...], bytes]:
@@ -309,18 +314,12 @@ class FittedMask:
     @property
     def solid(self) -> bool:
         """Whether the silhouette is one piece without holes, so that its outer contour is the whole shape."""
-        return len(self._loops()) == 1
-
-    def _loops(self) -> list[FloatArray]:
-        """All contours in (row, column), thinned to the tolerance; closed, the first point repeated."""
-        # scikit-image 0.26 ships these two without annotations.
-        loops = find_contours(self.coverage, 0.5)  # type: ignore[no-untyped-call]
-        return [approximate_polygon(loop, CONTOUR_TOLERANCE) for loop in loops]  # type: ignore[no-untyped-call]
+        return len(self.loops) == 1
 
     def outer_contours(self) -> list[FloatArray]:
         """Outer contours, largest first: each (L, 2) float, x right, y up, pixels."""
         loops = []
-        for loop in self._loops():
+        for loop in self.loops:
             row, column = loop[:-1].T
             points = np.column_stack([column + 0.5, self.coverage.shape[0] - 0.5 - row])
             # Contours keep the background on their left: outer loops run clockwise, holes counter-clockwise.
