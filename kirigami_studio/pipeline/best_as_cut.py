@@ -49,6 +49,8 @@ class Looking:
     #: number, total: how many designs have been looked at with this one, and how many may be.
     number: int
     total: int
+    #: The design, and those that are looked at after it unless it decides, best first.
+    order: tuple[Candidate, ...]
 
 
 def best_as_cut(
@@ -88,10 +90,12 @@ def best_as_cut(
     most = min(len(hopeful), MOST_LOOKED_AT)
     for number in range(most):
         left = [one for one in hopeful if one not in refusals]
-        first = _next(left, result.ranked_as_cut(jams, refusals, losses).ranking, losses)
+        ranking = result.ranked_as_cut(jams, refusals, losses).ranking
+        first = _next(left, ranking, losses)
         if first is None:
             break
-        yield Looking(number + 1, most)
+        others = (one for one in ranking.ranked(left) if one not in losses and one is not first)
+        yield Looking(number + 1, most, (first, *others))
         found = yield from look(first)
         if found.refusal is not None:
             refusals[first] = found.refusal

@@ -286,15 +286,15 @@ def _whole_run(
             # Comparing a thousand designs with a thousand takes a second.
             new = distinct(result.candidates, beside)
             result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
-        result = yield from ranked_as_cut(result, cut, beside, cancel)
+        result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
         for _ in range(TRIMMED_FURTHER):
             if not wants_other_trims(result):
                 break
             result = yield from trimmed_further(result, cancel, pool)
-            result = yield from ranked_as_cut(result, cut, beside, cancel)
+            result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
         if wants_covers_on_pins(result):
             result = yield from covered_on_pins(result, cancel, pool)
-            result = yield from ranked_as_cut(result, cut, beside, cancel)
+            result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
         yield Finished(replace(result, judging_seconds=time.perf_counter() - began))
 
 
@@ -444,14 +444,23 @@ def completed(run: Iterator[object], tell: Tell) -> Result:
 
 
 def ranked_as_cut(
-    result: Result, cut: FabricationSettings, beside: tuple[Candidate, ...], cancel: Cancel
+    result: Result,
+    cut: FabricationSettings,
+    beside: tuple[Candidate, ...],
+    cancel: Cancel,
+    pool: Pool | None = None,
 ) -> Generator[Progress | Judged, None, Result]:
     """Rank designs with those beside them; report between the steps of every look.
 
-    Whoever iterates may do other work at each report.
+    Whoever iterates may do other work at each report.  Workers that are ready look at the second design and those that
+    follow it; pieces on pins are made here, where they are kept for the files.
     """
+    from kirigami_studio.pipeline.pool import shared_pool
     from kirigami_studio.studio.as_cut import estimates
+    from kirigami_studio.studio.looking_ahead import LooksAhead
     from kirigami_studio.studio.verdict import CloseLook, looking
+
+    pool = pool or shared_pool()
 
     target = result.request.target
     everything = replace(result, candidates=(*beside, *result.candidates))
@@ -464,26 +473,35 @@ def ranked_as_cut(
     jams = {one: as_cut.jam_phi for one, as_cut in known.items()}
 
     looked: list[Judged] = []
+    ahead: LooksAhead | None = None
 
     def look(one: Candidate) -> Generator[None, None, CloseLook]:
-        found = yield from looking(one, cut, target, cancel)
+        found = None if ahead is None else (yield from ahead.look(one))
+        if found is None:
+            found = yield from looking(one, cut, target, cancel)
         if found.as_cut is not None:
             known[one] = found.as_cut  # a simulation takes the place of the estimate
         looked.append(Judged(one, found.refusal, found.loss, found.as_cut))
         return found
 
     steps = best_as_cut(everything, jams, look)
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            found: Result = end.value
-            break
-        yield from looked
-        looked.clear()
-        if isinstance(step, Looking):
-            progress = _looking_at(step.number, step.total)
-        yield progress
+    try:
+        while True:
+            try:
+                step = next(steps)
+            except StopIteration as end:
+                found: Result = end.value
+                break
+            yield from looked
+            looked.clear()
+            if isinstance(step, Looking):
+                progress = _looking_at(step.number, step.total)
+                if step.number == 2 and len(step.order) > 1 and not is_pinned(cut) and pool.usable and pool.ready:
+                    ahead = LooksAhead(pool, result.request, step.order, cut, cancel)
+            yield progress
+    finally:
+        if ahead is not None:
+            ahead.close()
     yield from looked
     stay = {id(one) for one in beside}
     return replace(found, candidates=tuple(one for one in found.candidates if id(one) not in stay), as_cut=known)

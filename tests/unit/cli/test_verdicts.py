@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import time
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,12 +17,14 @@ from kirigami_studio.cli import main
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.score import evaluate
 from kirigami_studio.fabricate.options import ConnectorStyle, CutOptions
+from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.foundation.steps import never, result_of
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
-from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.events import Progress, Result
+from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import save
@@ -129,6 +133,33 @@ def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) ->
     brittle = result_of(ranked_as_cut(result, replace(document.fabrication, material="card-co2"), (), never))
     assert not any(brittle.ranking.cuttable(one) for one in brittle.candidates)
     assert {note.code for note in brittle.refusals.values()} == {"as_cut.breaks"}
+
+
+def test_that_workers_look_at_the_designs_after_the_first_and_find_the_same(document: Document) -> None:
+    target = document.target
+    assert target is not None
+    rng = np.random.default_rng(2)
+    candidates = []
+    for number in range(4):
+        sheet = deploy(RatioField.from_log10(0.1 * number * rng.uniform(-1.0, 1.0, (4, 5))))
+        candidates.append(Candidate(sheet.sheet, evaluate(sheet, target), seed=0, index=number))
+    result = Result(Request(target, (4, 5), regular=0.0, polish=0), tuple(candidates), 4, 0.0)
+    brittle = replace(document.fabrication, material="card-co2")
+    alone = result_of(ranked_as_cut(result, brittle, (), never, Pool(0)))
+    with closing(Pool(2)) as pool:
+        pool.start()
+        while not pool.ready:
+            time.sleep(0.05)
+        together = result_of(ranked_as_cut(result, brittle, (), never, pool))
+        assert len(alone.refusals) >= 3
+        assert together == alone and together.refusals == alone.refusals and together.losses == alone.losses
+        assert together.as_cut == alone.as_cut
+        # One that is stopped on its way leaves the workers to the next.
+        at: list[int] = []
+        steps = ranked_as_cut(result, brittle, (), lambda: bool(at) and at[-1] == 1, pool)
+        with pytest.raises(Cancelled):
+            at.extend(step.done for step in steps if isinstance(step, Progress))
+        assert pool.ready
 
 
 @pytest.mark.torch
