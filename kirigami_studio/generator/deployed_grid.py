@@ -100,6 +100,10 @@ class GridTransfer:
         """Where a flow from fields (B, own cells) starts: its states are fields of the network's own grid."""
         return z
 
+    def state_of(self, field: Tensor) -> Tensor:
+        """The state of the flow at which fields of the sheet (B, m * n) are reached."""
+        return self.down(field)
+
     def seen(self, state: Tensor) -> Tensor:
         """A state of the flow as the network sees it: (B, own cells)."""
         return state
@@ -146,6 +150,9 @@ class SymmetricTransfer(GridTransfer):
 
     def state(self, z: Tensor) -> Tensor:
         return self.symmetric(self.up(z))
+
+    def state_of(self, field: Tensor) -> Tensor:
+        return field
 
     def seen(self, state: Tensor) -> Tensor:
         return self.down(state)

@@ -17,14 +17,14 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "The data set {path} is not what its content hash names. Make it again with 'kirigami-studio dataset'."
     ),
     "training.shape_without_area": mark("The shape has no area."),
-    "training.fits_unreadable": mark("Cannot read fits from {path}. Make them with 'kirigami-studio dataset drawn'."),
+    "training.fits_unreadable": mark("Cannot read training data from {path}. Make it with 'kirigami-studio dataset'."),
     "training.fits_differ": mark(
-        "The fits in {path} were made with other settings ({settings}). Choose another folder."
+        "The training data in {path} was made with other settings ({settings}). Choose another folder."
     ),
     "training.fits_of_other_grid": mark(
         "Training on {rows} x {columns} voids needs fits of that grid, but these are of {fit_rows} x {fit_columns}."
     ),
-    "training.no_fits": mark("There are no fits to train on. Make some with 'kirigami-studio dataset drawn'."),
+    "training.no_fits": mark("There are no designs to train on. Make some with 'kirigami-studio dataset'."),
     "training.unknown_coupling": mark("There is no coupling called '{coupling:.40}'. Choose one of {choices}."),
     "training.unknown_advantages": mark("There are no advantages called '{advantages:.40}'. Choose one of {choices}."),
     "training.group_too_small": mark("A group needs at least 2 designs to compare, got {group}."),

@@ -82,7 +82,7 @@ class LooksAhead:
         self._found: dict[Candidate, CloseLook] = {}
 
     def look(self, one: Candidate) -> Generator[None, None, CloseLook | None]:
-        """Wait for the look at a design, between signs of life; None where no worker is left to look.
+        """Wait for the look at a design, between signs of life; None without workers.
 
         Raises
         ------

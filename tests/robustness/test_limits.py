@@ -13,7 +13,7 @@ from kirigami_studio.generator import weights
 from kirigami_studio.gui.stage import artwork_painting
 from kirigami_studio.lab.baselines import stored
 from kirigami_studio.lab.benchmark import run_store
-from kirigami_studio.lab.training import dataset, fitted_fields, learner
+from kirigami_studio.lab.training import block_archive, dataset, learner
 from kirigami_studio.lattice import sheet_files
 from kirigami_studio.mechanics import network_files
 from kirigami_studio.outlines import parts, read_dxf, read_image, read_pdf, source_file, svg_safety, svg_style
@@ -56,7 +56,7 @@ def rows() -> list[str]:
         f"SHA-256 as listed, finite numbers | |",
         f"| baseline weights | {stored.LARGEST_FILE // MIB} MiB | | |",
         f"| checkpoint | {learner.LARGEST_CHECKPOINT // MIB} MiB | plain tensors | |",
-        f"| training data, fits | {dataset.LARGEST_FILE // MIB} MiB; {fitted_fields.LARGEST_FILE // MIB} MiB | "
+        f"| training data, fits | {dataset.LARGEST_FILE // MIB} MiB; {block_archive.LARGEST_FILE // MIB} MiB | "
         f"SHA-256 as told | |",
         f"| records of a suite | {run_store.LARGEST_FILE // MIB} MiB | | |",
     ]

@@ -178,15 +178,18 @@ def training_of_a_baseline(learning_rate: float, channels: str, *more: Option) -
 
 SUB_COMMANDS: tuple[SubCommand, ...] = (
     SubCommand("dataset", "generate and verify training data as the paper describes", "lab.cli.learning:dataset", (
-        option("family", choices=("sobol", "structured", "released", "drawn"),
+        option("family", choices=("sobol", "structured", "released", "drawn", "first-designs"),
                help="distribution of the ratio fields; released: smooth fields with the moments of the paper's "
-                    "released generator; drawn: fits of procedural drawn shapes, for training only"),
+                    "released generator; drawn: fits of procedural drawn shapes, first-designs: what runs for such "
+                    "shapes put first, both for training only"),
         option("--out", required=True,
-               help="folder for FAMILY-SPLIT.npz; drawn: for drawn.npz, which an earlier run may have begun"),
+               help="folder for FAMILY-SPLIT.npz; drawn, first-designs: for FAMILY.npz, which an earlier run may have "
+                    "begun"),
         option("--split", default="all", choices=("all", "train", "validation", "test"),
                help="split to write (default all: 5000, 500 and 500 designs)"),
         option("--count", type=count, default=None,
-               help="designs in each split (default: the paper's); drawn: total number of fits (default 7000)"),
+               help="designs in each split (default: the paper's); drawn: total number of fits (default 7000); "
+                    "first-designs: number of shapes (default 4000)"),
         GRID,
         SEED,
         option("--processes", type=count, default=1, help="number of processes at the same time (default 1)"),
@@ -194,7 +197,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         JSON,
     ), ("kirigami-studio dataset sobol --out data --split test",
         "kirigami-studio dataset structured --out data --scheduler tcp://10.0.0.5:8786",
-        "kirigami-studio dataset drawn --out runs/drawn --processes 2")),
+        "kirigami-studio dataset drawn --out runs/drawn --processes 2",
+        "kirigami-studio dataset first-designs --out runs/first --seed 20261127 --processes 2")),
     SubCommand("train prior", "train a generator; resumes from the checkpoint in its run folder",
         "lab.cli.learning:train", (
         RUN_FOLDER,
@@ -264,6 +268,13 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
                help="share of drawn shapes among the targets (default 0.35)"),
         option("--pictured", type=amount, default=0.5,
                help="share of targets that are traced from a picture (default 0.5)"),
+        option("--designs", default=None, metavar="FILE",
+               help="distil first designs too, see 'dataset first-designs'"),
+        option("--design-share", type=amount, default=0.6, help="share of steps that distil (default 0.6)"),
+        option("--flow-weight", type=amount, default=0.2,
+               help="in these, weight of the flow from noise to the design (default 0.2)"),
+        option("--likeness-weight", type=amount, default=0.3,
+               help="in these, weight of the distance of samples from the design (default 0.3)"),
         option("--go-on", default=None, metavar="WEIGHTS",
                help="start from these aligned weights: 'bundled', or a .safetensors file (default: the prior's)"),
         *run_of_training(500),
@@ -271,6 +282,8 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio train align --go-on bundled --seed 1 --out runs/further",
         "kirigami-studio train align --go-on bundled --evenness-weight 0.6 --free-rims 0.6 --symmetric 0.35 "
         "--out runs/even",
+        "kirigami-studio train align --go-on bundled --evenness-weight 0.6 --free-rims 0.6 --symmetric 0.35 "
+        "--designs runs/first/first-designs.npz --out runs/distilled",
         "kirigami-studio train align --start runs/prior/prior.safetensors --minutes 30 --out runs/aligned")),
     SubCommand("train grpo", "align a generator with a reward, by the paper's GRPO; resumes from its checkpoint",
         "lab.cli.learning:grpo", (

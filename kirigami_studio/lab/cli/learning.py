@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: Fits of drawn shapes by default: about 3800 shapes, each fitted twice, of which nine in ten come near enough.
 DRAWN_COUNT = 7_000
+#: Shapes whose first designs are made by default.
+DESIGNED_COUNT = 4_000
 #: Validation targets of each family, and of the figures on groups of samples.
 VALIDATION_COUNT = 200
 GROUP_COUNT = 50
@@ -35,8 +37,10 @@ def dataset(arguments: argparse.Namespace) -> int:
     from kirigami_studio.lab.training.dataset import SPLITS, Split, generate_split, verify
 
     grid = parse_grid(arguments.grid)
-    if arguments.family == "drawn":
-        return _drawn(arguments, grid)
+    if arguments.family in ("drawn", "first-designs"):
+        if arguments.split not in ("all", "train"):
+            raise UsageError("training.fits_are_not_split")
+        return _drawn(arguments, grid) if arguments.family == "drawn" else _first_designs(arguments)
     line = ProgressLine()
     files: dict[str, str] = {}
     about: dict[str, dict[str, object]] = {}
@@ -73,8 +77,6 @@ def _drawn(arguments: argparse.Namespace, grid: tuple[int, int]) -> int:
     """Fit drawn shapes until the archive holds as many as asked for."""
     from kirigami_studio.lab.training.fitted_fields import FittedFields, fit_shapes
 
-    if arguments.split not in ("all", "train"):
-        raise UsageError("training.fits_are_not_split")
     count = DRAWN_COUNT if arguments.count is None else arguments.count
     path = Path(arguments.out) / "drawn.npz"
     line = ProgressLine()
@@ -86,6 +88,27 @@ def _drawn(arguments: argparse.Namespace, grid: tuple[int, int]) -> int:
         print_json({"files": {"train": str(path)}, "fits": len(fits.z), "mean_iou": float(fits.iou.mean())})
     else:
         say(f"{path}: {len(fits.z)} fits of drawn shapes, mean exact IoU {fits.iou.mean():.4f}")
+    return 0
+
+
+def _first_designs(arguments: argparse.Namespace) -> int:
+    """Design drawn shapes until the archive holds the first designs of as many as asked for."""
+    from kirigami_studio.lab.training.first_designs import FirstDesigns, design_shapes
+
+    count = DESIGNED_COUNT if arguments.count is None else arguments.count
+    path = Path(arguments.out) / "first-designs.npz"
+    line = ProgressLine()
+    for done in design_shapes(path, count, arguments.seed, workers=workers(arguments)):
+        line.show(f"first-designs: {done} of {count} shapes")
+    line.clear()
+    made = FirstDesigns.load(path)
+    first = made.behind == 0.0
+    found = {"mean_iou": float(made.iou[first].mean()), "mean_panel_area_cv": float(made.area_cv[first].mean())}
+    if arguments.json:
+        print_json({"files": {"train": str(path)}, "shapes": int(first.sum()), "designs": len(made.z), **found})
+    else:
+        text = "{0}: {1} designs of {2} shapes; first ones: mean exact IoU {mean_iou:.4f}, CV {mean_panel_area_cv:.3f}"
+        say(text.format(path, len(made.z), int(first.sum()), **found))
     return 0
 
 
@@ -353,6 +376,7 @@ def align(arguments: argparse.Namespace) -> int:
 
 def _align(arguments: argparse.Namespace, process: Process) -> None:
     from kirigami_studio.lab.trained_weights import store_variants
+    from kirigami_studio.lab.training.first_designs import FirstDesigns
     from kirigami_studio.lab.training.train_aligned import VARIANTS, AlignSettings, aligned_network, train_aligned
     from kirigami_studio.lab.training.validation import preference_figures
 
@@ -363,12 +387,14 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
         "--free-rims": arguments.free_rims,
         "--symmetric": arguments.symmetric,
         "--drawn-share": arguments.drawn_share,
+        "--design-share": arguments.design_share,
     }
     for option, share in shares.items():
         if share > 1.0:
             raise UsageError("training.share_above_one", option=option, share=share)
     prior = starting_model(arguments.start)
     begin = None if arguments.go_on is None else starting_model(arguments.go_on, "accuracy")
+    designs = None if arguments.designs is None else FirstDesigns.load(Path(arguments.designs))
     settings = AlignSettings(
         prior=prior.digest,
         begin="" if begin is None else begin.digest,
@@ -384,6 +410,10 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
         pictured_share=arguments.pictured,
         free_rims=arguments.free_rims,
         symmetric_share=arguments.symmetric,
+        designs=designs.digest if designs else "",
+        design_share=arguments.design_share,
+        flow_weight=arguments.flow_weight,
+        likeness_weight=arguments.likeness_weight,
         seed=arguments.seed,
         shape=replace(AlignSettings(prior.digest).shape, rims=arguments.free_rims > 0.0),
     )
@@ -399,6 +429,7 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
         validate,
         prior,
         begin,
+        designs,
         seconds=seconds,
         validate_every=arguments.validate_every,
     )

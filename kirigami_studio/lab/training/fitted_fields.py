@@ -3,22 +3,16 @@
 The bundled generator guesses, the polish fits its guesses on the exact geometry, and what comes near enough is kept as
 (field, requested outline, achieved outline): training on it teaches the next generator where fits end.  The requested
 outline is kept in the frame of the fitted sheet, so that field and outline agree about the pose.
-
-Block b of seed s always holds the same fits, so an archive grows by blocks and a stopped run is taken up where it was.
 """
 
 from __future__ import annotations
 
-import hashlib
-import io
-import json
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
-from itertools import count as count_from
 from pathlib import Path
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -30,13 +24,13 @@ from kirigami_studio.evaluate.feasibility import TAU_OVERLAP, invalid_quads, ove
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.evaluate.siou import exact_iou
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.foundation.errors import KirigamiError, UsageError
-from kirigami_studio.foundation.files import opened_file, write_atomically
+from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.paper import LOG_RATIO_LIMIT
-from kirigami_studio.foundation.processes import HERE, Workers, results_of
+from kirigami_studio.foundation.processes import HERE, Workers
 from kirigami_studio.generator.conditioning import normalised, square_pose
 from kirigami_studio.generator.sampler import BATCH, pose_angle, sample_fields
 from kirigami_studio.generator.weights import load_model
+from kirigami_studio.lab.training.block_archive import BlockArchive, grown
 from kirigami_studio.lab.training.corpus import zero_outline
 from kirigami_studio.lab.training.drawn_shapes import drawn_shape
 from kirigami_studio.lab.training.fields import turned_quarters
@@ -61,12 +55,10 @@ FAR = 0.03
 SMALLEST_IOU = 0.85
 #: Points at equal arc length that the requested outline is kept with: 1.7 times what the network sees.
 REQUESTED_POINTS = 160
-#: Largest archive that is read (bytes).
-LARGEST_FILE = 2 * 2**30
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class FittedFields:
+class FittedFields(BlockArchive):
     """Fields fitted to drawn shapes.
 
     Attributes
@@ -94,37 +86,7 @@ class FittedFields:
     block: npt.NDArray[np.int64]
     about: dict[str, object]
 
-    def save(self, path: Path) -> None:
-        """Write the archive atomically."""
-        buffer = io.BytesIO()
-        arrays = {name: getattr(self, name) for name in ARRAYS}
-        np.savez(buffer, about=np.array(json.dumps(self.about)), **arrays)
-        write_atomically(path, buffer.getvalue())
-
-    @classmethod
-    def load(cls, path: Path) -> FittedFields:
-        """Read an archive.
-
-        Raises
-        ------
-        KirigamiError
-            It is missing, damaged or holds something else.
-        """
-        try:
-            with opened_file(path, LARGEST_FILE) as file, np.load(file, allow_pickle=False) as archive:
-                arrays = {name: archive[name] for name in ARRAYS}
-                about = json.loads(str(archive["about"]))
-        except Exception as error:  # zipfile and NumPy raise a dozen kinds on damaged archives
-            raise KirigamiError("training.fits_unreadable", path=path) from error
-        return cls(**arrays, about=about)
-
-    @property
-    def digest(self) -> str:
-        """SHA-256 of what a training run sees of the archive."""
-        return hashlib.sha256(self.z.tobytes() + self.requested.tobytes()).hexdigest()
-
-
-ARRAYS = ("z", "requested", "iou", "shape", "candidate", "block")
+    SEEN: ClassVar[tuple[str, ...]] = ("z", "requested")
 
 
 def fit_shapes(
@@ -155,20 +117,16 @@ def fit_shapes(
         The archive there was made with another grid, seed or generator.
     """
     generator = load_model(VARIANT).digest
-    made_by = {"grid": list(grid), "seed": seed, "generator": generator, "block size": block_size}
-    fits = FittedFields.load(path) if path.exists() else _nothing(grid, made_by)
-    other = [name for name, value in made_by.items() if fits.about.get(name) != value]
-    if other:
-        raise KirigamiError("training.fits_differ", path=path, settings=", ".join(other))
-    done = {int(number) for number in fits.about["blocks"]}  # type: ignore[attr-defined]
+    made_by: dict[str, object] = {
+        "grid": list(grid), "seed": seed, "generator": generator, "block size": block_size
+    }  # fmt: skip
     work = partial(fitted_block, seed=seed, grid=grid, size=block_size)
-    blocks = results_of(work, (number for number in count_from(0) if number not in done), workers)
-    while len(fits.z) < count:
-        number, new = next(blocks)
-        fits = _joined(fits, new, number)
-        fits.save(path)
-        yield len(fits.z)
-    blocks.close()
+    archives = grown(path, _table([], grid, 0), made_by, work, workers)
+    size = len(next(archives).z)
+    while size < count:
+        size = len(next(archives).z)
+        yield size
+    archives.close()
 
 
 def fitted_block(block: int, seed: int, grid: tuple[int, int], size: int = BLOCK) -> FittedFields:
@@ -233,18 +191,6 @@ def _table(
         np.full(len(rows), block, dtype=np.int64),
         {},
     )
-
-
-def _nothing(grid: tuple[int, int], made_by: dict[str, object]) -> FittedFields:
-    return replace(_table([], grid, 0), about={**made_by, "blocks": []})
-
-
-def _joined(fits: FittedFields, new: FittedFields, block: int) -> FittedFields:
-    """Both, in the order of their blocks whatever finished first."""
-    blocks = sorted([*fits.about["blocks"], block])  # type: ignore[misc]
-    order = np.argsort(np.concatenate([fits.block, new.block]), kind="stable")
-    arrays: dict[str, Any] = {name: np.concatenate([getattr(fits, name), getattr(new, name)])[order] for name in ARRAYS}
-    return FittedFields(**arrays, about={**fits.about, "blocks": blocks})
 
 
 #: Largest standard deviation by which fields of exact pairs are moved.  A tenth of a decade moves outlines by about a

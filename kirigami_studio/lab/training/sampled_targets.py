@@ -8,6 +8,7 @@ by any angle and traced again as a file is read.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -176,6 +177,13 @@ class TargetSource:
             pool = self.drawn if symmetry is None else self._symmetric(symmetry)
             pools.append(pool[self._indices(len(pool), drawn)])
         clean = [self._posed(pool) if symmetry is None else self._turned(pool, symmetry) for pool in pools]
+        return self._as_seen(clean)
+
+    def lying(self, polygons: Tensor, turn_noise: float) -> SampledTargets:
+        """``polygons`` (B, L, 2) as they lie, but for a turn of this standard deviation (radians)."""
+        return self._as_seen([turned(polygons, turn_noise * self._normal(polygons.shape[:1]))])
+
+    def _as_seen(self, clean: Sequence[Tensor]) -> SampledTargets:
         return SampledTargets(
             tuple(self._disturbed(part) for part in clean),
             tuple(self.shift_noise * self._normal(part.shape[:1]) for part in clean),

@@ -3,6 +3,10 @@
 The network is unrolled over the steps that the studio takes; the loss is measured on what comes out (the idea of
 DRaFT, arXiv 2309.17400), so no reward has to be guessed from ranks.  One network learns the whole trade between match
 and regularity: the preference is an input, drawn anew for every row.  ``grpo`` holds the paper's rule.
+
+A share of the steps may distil runs: their rows are first designs (:mod:`kirigami_studio.lab.training.first_designs`)
+in the place of targets alone.  Beside the same loss these steps have that of the flow, which leads from noise to the
+design, and the distance of what the sampler ends at from it.
 """
 
 from __future__ import annotations
@@ -25,10 +29,12 @@ from kirigami_studio.generator.network import NetworkShape, VelocityNetwork
 from kirigami_studio.generator.weights import Model
 from kirigami_studio.lab.training.corpus import deployed_outline
 from kirigami_studio.lab.training.fields import mixed_fields
+from kirigami_studio.lab.training.first_designs import DesignBatches, FirstDesigns
+from kirigami_studio.lab.training.flow_path import ConditionalPath, cfm_loss
 from kirigami_studio.lab.training.learner import CHECKPOINT, Checkpoint, Learner, grown_state, opened, trained
 from kirigami_studio.lab.training.preference_loss import EARLY_WEIGHT, PreferenceTerms, trail_gap
 from kirigami_studio.lab.training.ranks import Ranks
-from kirigami_studio.lab.training.sampled_targets import TargetSource
+from kirigami_studio.lab.training.sampled_targets import SampledTargets, TargetSource
 from kirigami_studio.lab.training.train_flow import LARGEST_GRADIENT, schedule
 from kirigami_studio.lattice.batched import BatchedLattice
 from kirigami_studio.lattice.symmetry import Symmetry
@@ -37,6 +43,10 @@ from kirigami_studio.lattice.symmetry import Symmetry
 NEW_LAYERS, NEW_PACE = ("prefer", "lie"), 30.0
 #: Least and most voids each way of other sheets, the share of them at phi = 0, and the largest angle of the others.
 GRIDS, FLAT_SHARE, LARGEST_PHI = (6, 16), 0.6, 2 * math.pi / 3
+#: Parts of the loss that records have.
+NOTED = ("match", "variation", "unevenness")
+#: Sheets among which the rows of a step that distils are divided.
+SHEETS = 4
 #: What is bundled of an aligned network: names and preferences, chosen on validation figures.
 VARIANTS = {"accuracy": 0.0, "balanced": 0.35, "regularity": 0.9}
 
@@ -83,6 +93,15 @@ class AlignSettings:
         Share of the steps that draw on sheets whose rim is free; a network with ``rims`` is told so.
     symmetric_share : float
         Share of the steps that draw within a symmetry of the grid, where it has any.
+    designs : str
+        Digest of the first designs that take part; empty for none.
+    design_share : float
+        Share of the steps that are theirs.
+    flow_weight, likeness_weight : float
+        In these steps: of the flow matching loss (paper, Eq. 3), and of the mean squared distance of samples from the
+        designs, both in squared log10 of the ratios.
+    turn_noise : float, radians
+        Standard deviation of the rotation of their targets against the sheet.
     seed : int
     shape : NetworkShape
     """
@@ -106,6 +125,11 @@ class AlignSettings:
     other_sheets: float = 0.5
     free_rims: float = 0.0
     symmetric_share: float = 0.0
+    designs: str = ""
+    design_share: float = 0.6
+    flow_weight: float = 0.2
+    likeness_weight: float = 0.3
+    turn_noise: float = 0.03
     seed: int = 0
     shape: NetworkShape = field(default_factory=lambda: NetworkShape(direction=True, preference=True, sheets=True))
 
@@ -120,6 +144,7 @@ def train_aligned(
     validate: Callable[[VelocityNetwork], dict[str, float]],
     prior: Model,
     begin: Model | None = None,
+    designs: FirstDesigns | None = None,
     *,
     seconds: float = math.inf,
     validate_every: int = 500,
@@ -137,6 +162,8 @@ def train_aligned(
     prior : Model
     begin : Model, optional
         Aligned weights to go on from.
+    designs : FirstDesigns, optional
+        What is distilled.
     seconds : float
         Stop with a checkpoint after this wall time even if steps remain.
     validate_every : int
@@ -146,13 +173,12 @@ def train_aligned(
     ExportError
         The folder cannot be made or written.
     ModelError
-        The checkpoint belongs to other settings, or the prior is not the one that the settings name.
+        The checkpoint belongs to other settings, or prior, weights or designs are not those that the settings name.
     """
-    if prior.digest != settings.prior:
+    found = prior.digest, begin.digest if begin else "", designs.digest if designs else ""
+    if found != (settings.prior, settings.begin, settings.designs):
         raise ModelError("training.other_start")
-    if (begin.digest if begin else "") != settings.begin:
-        raise ModelError("training.other_start")
-    run = AlignRun(settings, opened(folder), device, prior, begin)
+    run = AlignRun(settings, opened(folder), device, prior, begin, designs)
     yield from trained(run, settings.steps, folder, validate, seconds, validate_every)
 
 
@@ -175,10 +201,18 @@ class AlignRun:
     prior : Model
     begin : Model, optional
         Aligned weights to go on from.
+    designs : FirstDesigns, optional
+        What is distilled.
     """
 
     def __init__(
-        self, settings: AlignSettings, path: Path, device: torch.device, prior: Model, begin: Model | None = None
+        self,
+        settings: AlignSettings,
+        path: Path,
+        device: torch.device,
+        prior: Model,
+        begin: Model | None = None,
+        designs: FirstDesigns | None = None,
     ) -> None:
         self.settings, self.path, self.device = settings, path, device
         self.prior = prior.network.to(device)
@@ -203,6 +237,7 @@ class AlignRun:
             self.generator,
             device,
         )
+        self.designs = DesignBatches(designs, self.seed, device) if designs else None
         if path.exists():
             self.learner.resume(path, settings.to_json())
 
@@ -216,36 +251,68 @@ class AlignRun:
         settings = self.settings
         for group in self.learner.optimiser.param_groups:
             group["lr"] = group["pace"] * settings.learning_rate * schedule(self.step, settings.steps)
-        grid = self._grid()
+        parts: dict[str, float] = {}
+        chosen = np.random.default_rng((settings.seed, 2, self.step)).random() < settings.design_share
+        compute = self._distilled if self.designs is not None and chosen else self._anchored
+        loss = self.learner.loss(compute(parts))
+        self.learner.learn(loss, settings.average_decay, LARGEST_GRADIENT)
+        self.learner.step += 1
+        return {"loss": float(loss.detach()), **parts}
+
+    def _anchored(self, parts: dict[str, float]) -> Callable[[], Tensor]:
+        """Loss of samples for targets alone, held near those of the prior; notes its ``parts``."""
+        settings, grid = self.settings, self._grid()
         drawn = round(settings.drawn_share * self.batch) if settings.drawn else 0
         targets = self.source.targets(self._silhouettes(grid, self.batch - drawn), drawn, grid.symmetry)
         preference = self._preferences(self.batch)
-        cells = settings.shape.rows * settings.shape.columns
-        noise = torch.randn((self.batch, cells), generator=self.generator, device=self.device)
-        noise = noise * settings.shape.z_scale
-        parts: dict[str, float] = {}
+        noise = self._noise(self.batch)
 
         def compute() -> Tensor:
             code = targets.code(self.network, grid, preference)
             designs = trail(self.network, noise, code, settings.sampling_steps)
-            terms, early = trail_gap(self._lattice(grid), grid, designs, targets.loop)
-            z = designs[-1][:, : grid.cells]
             anchored = slice(0, None, settings.anchored_every)
             with torch.no_grad():
                 code = targets.code(self.prior, grid, preference).picked(anchored)
                 reference = integrate(self.prior, noise[anchored], code, settings.sampling_steps)
                 reference = reference[:, : grid.cells].clamp(-LOG_RATIO_LIMIT, LOG_RATIO_LIMIT)
-            anchor = (z[anchored] - reference).square().mean()
-            parts["match"] = float(terms.match.mean().detach())
-            parts["variation"] = float(terms.variation.mean().detach())
-            parts["unevenness"] = float(terms.unevenness.mean().detach())
+            anchor = (designs[-1][anchored, : grid.cells] - reference).square().mean()
             parts["anchor"] = float(anchor.detach())
-            return self._loss(terms, anchor, preference) + EARLY_WEIGHT * early
+            measured = self._measured(grid, designs, targets, parts)
+            return self._loss(*measured, preference) + settings.anchor_weight * anchor
 
-        loss = self.learner.loss(compute)
-        self.learner.learn(loss, settings.average_decay, LARGEST_GRADIENT)
-        self.learner.step += 1
-        return {"loss": float(loss.detach()), **parts}
+        return compute
+
+    def _distilled(self, parts: dict[str, float]) -> Callable[[], Tensor]:
+        """Loss of samples for the targets of first designs; notes its ``parts``."""
+        settings = self.settings
+        assert self.designs is not None
+        sheets = self.designs.rows(self.step, self.batch, min(SHEETS, self.batch))
+        drawn = [
+            (
+                rows,
+                self.source.lying(rows.polygons, settings.turn_noise),
+                self._preferences(len(rows.z)),
+                self._noise(2 * len(rows.z)).chunk(2),
+                torch.rand(len(rows.z), generator=self.generator, device=self.device),
+            )
+            for rows in sheets
+        ]
+
+        def compute() -> Tensor:
+            losses = []
+            for rows, targets, preference, (noise, start), times in drawn:
+                code = targets.code(self.network, rows.grid, preference)
+                transfer = code.transfer
+                path = ConditionalPath.sample(transfer.state(start), transfer.state_of(rows.z), times)
+                flow = cfm_loss(self.network(path.x_t, times, code), path)
+                designs = trail(self.network, noise, code, settings.sampling_steps)
+                likeness = (designs[-1][:, : rows.grid.cells] - rows.z).square().mean()
+                parts.update(flow=float(flow.detach()), likeness=float(likeness.detach()))
+                loss = self._loss(*self._measured(rows.grid, designs, targets, {}), preference)
+                losses.append(loss + settings.flow_weight * flow + settings.likeness_weight * likeness)
+            return torch.stack(losses).mean()
+
+        return compute
 
     def averaged(self) -> VelocityNetwork:
         """A copy of the network with the averaged weights."""
@@ -255,10 +322,24 @@ class AlignRun:
         """Write the checkpoint."""
         self.learner.save(self.path, self.settings.to_json())
 
-    def _loss(self, terms: PreferenceTerms, anchor: Tensor, preference: Tensor) -> Tensor:
+    def _measured(
+        self, grid: DeployedGrid, designs: list[Tensor], targets: SampledTargets, parts: dict[str, float]
+    ) -> tuple[PreferenceTerms, Tensor]:
+        """Terms of the last design of a sampler, and the gap of those before it; notes ``parts``."""
+        terms, early = trail_gap(self._lattice(grid), grid, designs, targets.loop)
+        parts.update({name: float(getattr(terms, name).mean().detach()) for name in NOTED})
+        return terms, early
+
+    def _loss(self, terms: PreferenceTerms, early: Tensor, preference: Tensor) -> Tensor:
         settings = self.settings
         calm = settings.variation_weight * terms.variation + settings.evenness_weight * terms.unevenness
-        return (terms.match + preference * calm + terms.excess).mean() + settings.anchor_weight * anchor
+        return (terms.match + preference * calm + terms.excess).mean() + EARLY_WEIGHT * early
+
+    def _noise(self, rows: int) -> Tensor:
+        """Where the flow starts: (rows, own cells)."""
+        shape = self.settings.shape
+        noise = torch.randn((rows, shape.rows * shape.columns), generator=self.generator, device=self.device)
+        return noise * shape.z_scale
 
     def _grid(self) -> DeployedGrid:
         """The grid, angle and rim of this step: the network's own grid, or any of 6 to 16 voids each way and any useful

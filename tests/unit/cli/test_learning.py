@@ -12,6 +12,7 @@ import pytest
 from kirigami_studio.cli import main
 from kirigami_studio.generator.unet import UNetShape
 from kirigami_studio.generator.weights import load_model
+from kirigami_studio.lab.training import first_designs
 from kirigami_studio.lab.training.fitted_fields import FittedFields, fit_shapes, fitted_block
 from kirigami_studio.lab.training.train_flow import FlowSettings
 
@@ -42,6 +43,27 @@ def test_that_fits_of_drawn_shapes_are_written(
     written = FittedFields.load(Path(answered["files"]["train"]))
     assert len(written.z) == answered["fits"] >= 1
     assert written.iou.min() >= 0.85
+
+
+@pytest.mark.usefixtures("small_runs")
+def test_that_first_designs_are_written_and_distilled(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for name, value in {"DESIGNS": 2, "STEPS": 4, "SMALLEST_IOU": 0.7}.items():
+        monkeypatch.setattr(first_designs, name, value)
+    monkeypatch.setattr(first_designs, "design_shapes", partial(first_designs.design_shapes, block_size=1))
+    assert main(["dataset", "first-designs", "--count", "1", "--seed", "5", "--out", str(tmp_path), "--json"]) == 0
+    answered = json.loads(capsys.readouterr().out)
+    written = Path(answered["files"]["train"])
+    assert answered["shapes"] == 1 <= answered["designs"] and 0.7 <= answered["mean_iou"] <= 1.0
+    words = ["train", "align", "--steps", "1", "--batch", "4", "--drawn", "2", "--device", "cpu", "--json"]
+    words += ["--designs", str(written), "--design-share", "1", "--out", str(tmp_path / "run")]
+    assert main(words) == 0
+    record = json.loads(capsys.readouterr().out)["record"]
+    assert record["flow"] > 0.0 and record["likeness"] > 0.0
+    manifest = json.loads((tmp_path / "run" / "manifest.json").read_text())
+    settings = manifest["variants"]["balanced"]["about"]["settings"]
+    assert settings["designs"] == first_designs.FirstDesigns.load(written).digest
 
 
 @pytest.mark.usefixtures("small_runs")
@@ -103,6 +125,9 @@ def test_that_a_unet_is_trained_stored_and_gone_on_with(capsys: pytest.CaptureFi
     ("code", "words", "said"),
     [
         (2, ["dataset", "drawn", "--split", "test"], "training only"),
+        (2, ["dataset", "first-designs", "--split", "test"], "training only"),
+        (1, ["train", "align", "--designs", "nowhere.npz"], "nowhere.npz"),
+        (2, ["train", "align", "--design-share", "1.5"], "--design-share"),
         (2, ["train", "prior", "--fit-share", "1"], "--fit-share"),
         (2, ["train", "prior", "--channels", "8,16"], "--backbone unet"),
         (2, ["train", "prior", "--backbone", "unet", "--feedback"], "--feedback belongs to the perceptron"),

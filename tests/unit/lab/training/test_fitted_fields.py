@@ -17,7 +17,6 @@ from kirigami_studio.generator.conditioning import normalised
 from kirigami_studio.lab.training.corpus import zero_outline
 from kirigami_studio.lab.training.drawn_shapes import drawn_shape
 from kirigami_studio.lab.training.fitted_fields import (
-    ARRAYS,
     LARGEST_MOVE,
     REQUESTED_POINTS,
     SMALLEST_IOU,
@@ -75,7 +74,7 @@ def test_that_a_stopped_run_goes_on_to_the_same_fits(tmp_path: Path) -> None:
     assert first.about["blocks"] == [0]
     parts, whole = run(tmp_path / "parts.npz", 6), run(tmp_path / "folder" / "whole.npz", 6)
     assert len(whole.z) >= 6
-    for name in ARRAYS:
+    for name in FittedFields.arrays():
         assert np.array_equal(getattr(parts, name), getattr(whole, name))
     assert parts.digest == whole.digest != first.digest
     with refused(KirigamiError, "training.fits_differ", settings="seed"):

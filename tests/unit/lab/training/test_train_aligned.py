@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from kirigami_studio.generator.flow import trail
 from kirigami_studio.generator.network import VelocityNetwork
 from kirigami_studio.generator.weights import Model, load_model
 from kirigami_studio.lab.trained_weights import store_model
+from kirigami_studio.lab.training.first_designs import MOST_VOIDS, FirstDesigns
 from kirigami_studio.lab.training.preference_loss import PreferenceTerms, trail_gap
 from kirigami_studio.lab.training.train_aligned import GRIDS, LARGEST_PHI, AlignRun, AlignSettings, train_aligned
 from kirigami_studio.lattice.batched import BatchedLattice
@@ -53,7 +55,7 @@ def plain(tiny: AlignSettings) -> AlignSettings:
     return replace(tiny, free_rims=0.0, symmetric_share=0.0, evenness_weight=0.0)
 
 
-def align(settings: AlignSettings, folder: Path, prior: Model, **options: float) -> list[dict[str, float]]:
+def align(settings: AlignSettings, folder: Path, prior: Model, **options: Any) -> list[dict[str, float]]:
     return list(train_aligned(settings, folder, CPU, lambda network: {}, prior, validate_every=2, **options))
 
 
@@ -280,3 +282,48 @@ def test_that_even_panels_count_as_much_as_regularity_is_preferred(
     none, full = (run._loss(terms, torch.tensor(0.0), torch.full((48,), asked)) for asked in (0.0, 1.0))
     assert float(full - none) == pytest.approx(0.4 * float(terms.unevenness.mean()), rel=1e-4)
     assert float(terms.unevenness.mean()) > 0.1
+
+
+@pytest.fixture(scope="module")
+def designs() -> FirstDesigns:
+    """One field for all targets, which are its silhouette."""
+    z = random_fields(OWN, 1, 0.4, seed=21).expand(12, -1)
+    padded = np.zeros((12, MOST_VOIDS), dtype=np.float32)
+    padded[:, :16] = z.numpy()
+    requested = contour_points(silhouettes(z, OWN), 160).numpy()
+    none, number = np.zeros(12, dtype=np.float32), np.arange(12)
+    names = np.full(12, "", dtype="<U16")
+    return FirstDesigns(padded, requested, np.full((12, 2), 4), names, none, none, none, number, number, {})
+
+
+def test_that_distilling_brings_samples_and_flow_to_the_designs(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, prior: Model, tiny: AlignSettings, designs: FirstDesigns
+) -> None:
+    monkeypatch.setattr("kirigami_studio.lab.training.train_flow.WARM_UP_STEPS", 4)
+    settings = replace(
+        tiny, steps=24, drawn=0, learning_rate=0.02, designs=designs.digest, design_share=1.0,
+        flow_weight=1.0, likeness_weight=3.0,
+    )  # fmt: skip
+    run = AlignRun(settings, tmp_path / "checkpoint.pt", CPU, prior, designs=designs)
+    found = [run.advance() for _ in range(24)]
+    for part in ("flow", "likeness"):
+        values = [one[part] for one in found]
+        assert np.mean(values[-6:]) < 0.85 * np.mean(values[:6])
+    assert "anchor" not in found[0]
+
+
+def test_that_distilling_resumes_and_asks_for_the_designs_of_its_settings(
+    tmp_path: Path, prior: Model, tiny: AlignSettings, designs: FirstDesigns
+) -> None:
+    with pytest.raises(ModelError) as caught:
+        align(tiny, tmp_path / "none", prior, designs=designs)
+    assert caught.value.code == "training.other_start"
+    settings = replace(tiny, steps=4, designs=designs.digest, design_share=0.5)
+    align(settings, tmp_path / "whole", prior, designs=designs)
+    align(settings, tmp_path / "parts", prior, designs=designs, seconds=0.0)
+    align(settings, tmp_path / "parts", prior, designs=designs)
+    ended = [AlignRun(settings, tmp_path / name / "checkpoint.pt", CPU, prior, designs=designs) for name in PLACES]
+    assert same(ended[0].network, ended[1].network)
+
+
+PLACES = ("whole", "parts")
