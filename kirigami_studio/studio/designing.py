@@ -461,7 +461,6 @@ def ranked_as_cut(
     from kirigami_studio.studio.verdict import CloseLook, looking
 
     pool = pool or shared_pool()
-
     target = result.request.target
     everything = replace(result, candidates=(*beside, *result.candidates))
     progress = Progress(0, len(everything.candidates), tr("Checking designs as cut"), Phase.JUDGING)

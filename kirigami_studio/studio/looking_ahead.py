@@ -7,10 +7,11 @@ it does not decide, all that follow are looked at by workers, in the order in wh
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.words import choose, language
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.request import Request
@@ -36,6 +37,8 @@ class LookTask:
     candidate: Candidate
     settings: FabricationSettings
     target: Outline
+    #: In which notes name their facts: the window may have another one than the environment of its workers.
+    language: str = field(default_factory=language)
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Look.
@@ -45,6 +48,8 @@ class LookTask:
         Cancelled
             ``stopped`` returned true: half a look is none.
         """
+        if self.language != language():
+            choose(self.language)
         steps = looking(self.candidate, self.settings, self.target, stopped)
         while True:
             try:

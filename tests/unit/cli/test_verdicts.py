@@ -30,7 +30,9 @@ from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import save
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.studio import verdict
 from kirigami_studio.studio.designing import ranked_as_cut
+from kirigami_studio.studio.verdict import looking
 
 
 @pytest.fixture(scope="module")
@@ -135,7 +137,9 @@ def test_that_the_best_design_that_can_be_cut_comes_first(document: Document) ->
     assert {note.code for note in brittle.refusals.values()} == {"as_cut.breaks"}
 
 
-def test_that_workers_look_at_the_designs_after_the_first_and_find_the_same(document: Document) -> None:
+def test_that_workers_look_at_the_designs_after_the_first_and_find_the_same(
+    document: Document, monkeypatch: pytest.MonkeyPatch
+) -> None:
     target = document.target
     assert target is not None
     rng = np.random.default_rng(2)
@@ -150,8 +154,11 @@ def test_that_workers_look_at_the_designs_after_the_first_and_find_the_same(docu
         pool.start()
         while not pool.ready:
             time.sleep(0.05)
-        together = result_of(ranked_as_cut(result, brittle, (), never, pool))
-        assert len(alone.refusals) >= 3
+        here: list[Candidate] = []
+        with monkeypatch.context() as patch:
+            patch.setattr(verdict, "looking", lambda one, *more: here.append(one) or looking(one, *more))
+            together = result_of(ranked_as_cut(result, brittle, (), never, pool))
+        assert len(here) == 1 and len(alone.refusals) >= 3
         assert together == alone and together.refusals == alone.refusals and together.losses == alone.losses
         assert together.as_cut == alone.as_cut
         # One that is stopped on its way leaves the workers to the next.
