@@ -172,9 +172,10 @@ def baseline(path: Path) -> None:
 def training(path: Path) -> None:
     """Archives that training reads."""
     from kirigami_studio.lab.training.dataset import Split
+    from kirigami_studio.lab.training.first_designs import FirstDesigns
     from kirigami_studio.lab.training.fitted_fields import FittedFields
 
-    attempted(path, Split.load, FittedFields.load)
+    attempted(path, Split.load, FittedFields.load, FirstDesigns.load)
 
 
 def checkpoint(path: Path) -> None:

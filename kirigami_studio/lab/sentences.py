@@ -75,6 +75,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     ),
     "training.unknown_device": mark("There is no device called '{device:.40}'. Use auto, cpu or cuda."),
     "training.fits_are_not_split": mark("Fits of drawn shapes are for training only. Leave out --split."),
+    "training.grids_are_chosen": mark("First designs have grids of their own. Leave out --grid."),
     "training.channels_without_unet": mark(
         "--channels, --latent and --residuals belong to --backbone unet. Leave them out, or choose that backbone."
     ),

@@ -90,12 +90,11 @@ def best_as_cut(
     most = min(len(hopeful), MOST_LOOKED_AT)
     for number in range(most):
         left = [one for one in hopeful if one not in refusals]
-        ranking = result.ranked_as_cut(jams, refusals, losses).ranking
-        first = _next(left, ranking, losses)
-        if first is None:
+        order = _order(left, result.ranked_as_cut(jams, refusals, losses).ranking, losses)
+        if not order:
             break
-        others = (one for one in ranking.ranked(left) if one not in losses and one is not first)
-        yield Looking(number + 1, most, (first, *others))
+        first = order[0]
+        yield Looking(number + 1, most, order)
         found = yield from look(first)
         if found.refusal is not None:
             refusals[first] = found.refusal
@@ -107,14 +106,13 @@ def best_as_cut(
     return result.ranked_as_cut(jams, refusals, losses)
 
 
-def _next(left: Sequence[Candidate], ranking: Ranking, losses: Mapping[Candidate, float]) -> Candidate | None:
-    """The design to look at next of those that are left; None where none could be better."""
-    first = next(iter(ranking.ranked(left)), None)
-    if first is None or first not in losses:
-        return first
+def _order(left: Sequence[Candidate], ranking: Ranking, losses: Mapping[Candidate, float]) -> tuple[Candidate, ...]:
+    """Designs to look at next of those that are left, best first; none where none could be better."""
+    ranked = ranking.ranked(left)
+    unseen = tuple(one for one in ranked if one not in losses)
+    if not ranked or ranked[0] not in losses:
+        return unseen
     if not ranking.least_gap_mm or len(losses) >= MOST_PIECED:
-        return None
-    enough = ranking.worth_as_made(first) + WORTHWHILE
-    hopeful = [one for one in left if one not in losses]
-    hopeful = [one for one in hopeful if ranking.worth_as_made(one) + HOPED * (1.0 - one.match) > enough]
-    return next(iter(ranking.ranked(hopeful)), None)
+        return ()
+    enough = ranking.worth_as_made(ranked[0]) + WORTHWHILE
+    return tuple(one for one in unseen if ranking.worth_as_made(one) + HOPED * (1.0 - one.match) > enough)

@@ -495,7 +495,7 @@ def ranked_as_cut(
             looked.clear()
             if isinstance(step, Looking):
                 progress = _looking_at(step.number, step.total)
-                if step.number == 2 and len(step.order) > 1 and not is_pinned(cut) and pool.usable and pool.ready:
+                if step.number == 2 and len(step.order) > 1 and not is_pinned(cut) and pool.ready:
                     ahead = LooksAhead(pool, result.request, step.order, cut, cancel)
             yield progress
     finally:

@@ -15,12 +15,10 @@ from kirigami_studio.foundation.words import choose, language
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import LOOK
 from kirigami_studio.pipeline.tasks import TaskResult
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio.verdict import CloseLook, looking
-
-#: Seconds between two signs of life while workers look.
-LOOK = 0.02
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ from kirigami_studio.cli.console import ProgressLine, print_json, say
 from kirigami_studio.cli.option_types import parse_grid, workers
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.foundation.files import write_atomically
+from kirigami_studio.settings.design import USUAL_GRID
 
 if TYPE_CHECKING:
     from kirigami_studio.generator.velocity import Network, Shape
@@ -40,7 +41,11 @@ def dataset(arguments: argparse.Namespace) -> int:
     if arguments.family in ("drawn", "first-designs"):
         if arguments.split not in ("all", "train"):
             raise UsageError("training.fits_are_not_split")
-        return _drawn(arguments, grid) if arguments.family == "drawn" else _first_designs(arguments)
+        if arguments.family == "drawn":
+            return _drawn(arguments, grid)
+        if grid != USUAL_GRID:
+            raise UsageError("training.grids_are_chosen")
+        return _first_designs(arguments)
     line = ProgressLine()
     files: dict[str, str] = {}
     about: dict[str, dict[str, object]] = {}
@@ -103,6 +108,8 @@ def _first_designs(arguments: argparse.Namespace) -> int:
     line.clear()
     made = FirstDesigns.load(path)
     first = made.behind == 0.0
+    if not first.any():
+        raise UsageError("training.no_fits")
     found = {"mean_iou": float(made.iou[first].mean()), "mean_panel_area_cv": float(made.area_cv[first].mean())}
     if arguments.json:
         print_json({"files": {"train": str(path)}, "shapes": int(first.sum()), "designs": len(made.z), **found})

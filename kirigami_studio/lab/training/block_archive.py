@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
 from itertools import count as count_from
 from pathlib import Path
@@ -64,6 +64,8 @@ class BlockArchive:
             with opened_file(path, LARGEST_FILE) as file, np.load(file, allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in cls.arrays()}
                 about = json.loads(str(archive["about"]))
+            if len({len(rows) for rows in arrays.values()}) > 1:
+                raise ValueError("arrays of other lengths")
         except Exception as error:  # zipfile and NumPy raise a dozen kinds on damaged archives
             raise KirigamiError("training.fits_unreadable", path=path) from error
         return cls(**arrays, about=about)  # type: ignore[call-arg]  # of a dataclass
@@ -78,9 +80,15 @@ Archive = TypeVar("Archive", bound=BlockArchive)
 
 
 def grown(
-    path: Path, nothing: Archive, made_by: dict[str, object], made: Callable[[int], Archive], workers: Workers
-) -> Generator[Archive]:
-    """Add blocks to an archive without end; yields it before the first one and after each.
+    path: Path,
+    nothing: Archive,
+    made_by: dict[str, object],
+    made: Callable[[int], Archive],
+    workers: Workers,
+    size: Callable[[Archive], int],
+    wanted: int,
+) -> Iterator[int]:
+    """Add blocks to an archive until its size is the one wanted; yields the size after each.
 
     Parameters
     ----------
@@ -93,6 +101,9 @@ def grown(
         Number of a block -> its rows.  A function of a module, or a partial of one.
     workers : Workers
         Who makes blocks.
+    size : callable
+        Counts what an archive has.
+    wanted : int
 
     Raises
     ------
@@ -103,16 +114,14 @@ def grown(
     other = [name for name, value in made_by.items() if archive.about.get(name) != value]
     if other:
         raise KirigamiError("training.fits_differ", path=path, settings=", ".join(other))
-    yield archive
     done = set(cast("list[int]", archive.about["blocks"]))
     blocks = results_of(made, (number for number in count_from(0) if number not in done), workers)
-    try:
-        for number, new in blocks:
-            archive = _joined(archive, new, number)
-            archive.save(path)
-            yield archive
-    finally:
-        blocks.close()
+    while size(archive) < wanted:
+        number, new = next(blocks)
+        archive = _joined(archive, new, number)
+        archive.save(path)
+        yield size(archive)
+    blocks.close()
 
 
 def _joined(archive: Archive, new: Archive, block: int) -> Archive:

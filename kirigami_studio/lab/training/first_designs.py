@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +34,7 @@ from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import best_of, with_grid
+from kirigami_studio.settings.design import DesignSettings
 
 Float32Array = npt.NDArray[np.float32]
 IntArray = npt.NDArray[np.int64]
@@ -113,19 +114,14 @@ def design_shapes(
     KirigamiError
         The archive there was made with another seed or generator.
     """
-    variant = Request.__dataclass_fields__["variant"].default
-    made_by: dict[str, object] = {"seed": seed, "generator": load_model(variant).digest, "block size": block_size}
+    generator = load_model(DesignSettings().variant).digest
+    made_by: dict[str, object] = {"seed": seed, "generator": generator, "block size": block_size}
     work = partial(designed_block, seed=seed, size=block_size)
-    archives = grown(path, _table([], 0), made_by, work, workers)
-    done = _shapes_of(next(archives))
-    while done < shapes:
-        done = _shapes_of(next(archives))
-        yield done
-    archives.close()
 
+    def done(archive: FirstDesigns) -> int:
+        return block_size * len(cast("list[int]", archive.about["blocks"]))
 
-def _shapes_of(archive: FirstDesigns) -> int:
-    return len(archive.about["blocks"]) * int(archive.about["block size"])  # type: ignore[arg-type, call-overload]
+    yield from grown(path, _table([], 0), made_by, work, workers, done, shapes)
 
 
 @dataclass(frozen=True, slots=True)

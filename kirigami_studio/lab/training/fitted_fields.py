@@ -121,12 +121,7 @@ def fit_shapes(
         "grid": list(grid), "seed": seed, "generator": generator, "block size": block_size
     }  # fmt: skip
     work = partial(fitted_block, seed=seed, grid=grid, size=block_size)
-    archives = grown(path, _table([], grid, 0), made_by, work, workers)
-    size = len(next(archives).z)
-    while size < count:
-        size = len(next(archives).z)
-        yield size
-    archives.close()
+    yield from grown(path, _table([], grid, 0), made_by, work, workers, lambda archive: len(archive.z), count)
 
 
 def fitted_block(block: int, seed: int, grid: tuple[int, int], size: int = BLOCK) -> FittedFields:

@@ -126,6 +126,7 @@ def test_that_a_unet_is_trained_stored_and_gone_on_with(capsys: pytest.CaptureFi
     [
         (2, ["dataset", "drawn", "--split", "test"], "training only"),
         (2, ["dataset", "first-designs", "--split", "test"], "training only"),
+        (2, ["dataset", "first-designs", "--grid", "6x6"], "Leave out --grid"),
         (1, ["train", "align", "--designs", "nowhere.npz"], "nowhere.npz"),
         (2, ["train", "align", "--design-share", "1.5"], "--design-share"),
         (2, ["train", "prior", "--fit-share", "1"], "--fit-share"),

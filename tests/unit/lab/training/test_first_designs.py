@@ -158,3 +158,12 @@ def test_that_a_mirror_turns_with_its_sheet() -> None:
     assert turned_symmetry(Symmetry.LEFT_RIGHT, quarter) is Symmetry.TOP_BOTTOM
     assert turned_symmetry(Symmetry.TWO_MIRRORS, quarter) is Symmetry.TWO_MIRRORS
     assert turned_symmetry(Symmetry.LEFT_RIGHT, lattice_moves(5, 7)[1]) is Symmetry.LEFT_RIGHT
+
+
+def test_that_an_archive_whose_arrays_differ_in_length_is_damaged(tmp_path: Path) -> None:
+    whole = made([np.zeros((4, 4))] * 2, ["", ""], [0.0, 0.0])
+    whole.save(tmp_path / "whole.npz")
+    assert len(FirstDesigns.load(tmp_path / "whole.npz").z) == 2
+    replace(whole, behind=whole.behind[:1]).save(tmp_path / "damaged.npz")
+    with refused(KirigamiError, "training.fits_unreadable", path=tmp_path / "damaged.npz"):
+        FirstDesigns.load(tmp_path / "damaged.npz")
