@@ -4,8 +4,7 @@ Eliminating the v family of nodes leaves one block row per row of h nodes,
 
     h_i = L_i h_{i-1} + U_i h_{i+1} + c_i,        L_i, U_i : (n+1) x (n+1), two entries a row,
 
-an M-matrix: the block Thomas algorithm needs no pivoting between blocks and costs O(m n^3) with tiny constants.  Blocks
-of at most 65 x 65 stay clear of the batched dense solve that stalls in torch 2.13 for n > 150 with two MKL threads.
+which ``paired_sweep`` solves.
 
 :class:`BatchedLattice` decodes and lets gradients through; :class:`BatchedSlopes` gives the whole derivative of the
 outline by an adjoint sweep, as ``polish.sensitivity`` does for one design.  Both take rim offsets: the given nodes are
@@ -24,6 +23,7 @@ from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import RatioError, SheetError
 from kirigami_studio.lattice.compact import barycentric_stencil
 from kirigami_studio.lattice.deployment import even_part_of_outline
+from kirigami_studio.lattice.paired_sweep import paired_sweep, transposed
 from kirigami_studio.lattice.sheet import RimPath, rim_table
 from kirigami_studio.lattice.topology import topology
 
@@ -97,71 +97,67 @@ class BatchedLattice:
 
     def _sweep(self, weight: Tensor, given: Tensor) -> Tensor:
         """Positions of the h rows: (B, m, n + 1, 2)."""
-        coupling = self._coupling(weight)
-        known = weight[:, self._known_weight, None] * given[:, self._known_node]
-        constant = (given[:, self._inner_h] * self._inner_h_given).expand(weight.shape[0], -1, -1)
-        constant = constant.index_add(1, self._known_slot, known)
-        return block_sweep(coupling[:, 0], coupling[:, 1], constant.view(-1, self.rows, self.columns + 1, 2))
+        batch, width = len(weight), self.columns + 1
+        known = weight.index_select(1, self._known_weight).view(batch, 2, -1, 1)
+        places = given.index_select(1, self._known_node).view(len(given), 2, -1, 2)
+        constant = (known * places).sum(dim=1).view(batch, self.rows, width, 2)
+        return paired_sweep(self._coupling(weight), constant)
 
     def _coupling(self, weight: Tensor) -> Tensor:
-        """L and U of every block row: (B, 2, m, n + 1, n + 1)."""
-        m, width = self.rows, self.columns + 1
-        values = weight[:, self._pair[0]] * weight[:, self._pair[1]]
-        coupling = weight.new_zeros(weight.shape[0], 2 * m * width * width)
-        return coupling.index_copy(1, self._pair_slot, values).view(-1, 2, m, width, width)
+        """Weights of ``paired_sweep``: (B, 4, m, n + 1)."""
+        return weight.index_select(1, self._pair).view(-1, 4, self.rows, self.columns + 1)
 
     def _weights(self, ratio: Tensor) -> Tensor:
-        """Stencil weights of designs (B, m, n), both ends of every free node: (B, 2 K)."""
+        """Stencil weights of designs (B, m, n), of first and second ends, 0 and 1: (B, 2 m n + 2)."""
         if ratio.ndim != 3 or tuple(ratio.shape[1:]) != (self.rows, self.columns):
             raise RatioError("ratios.wrong_batch_shape", rows=self.rows, columns=self.columns, shape=tuple(ratio.shape))
-        x = ratio.to(self.device, self.dtype).flatten(1).index_select(1, self._void)
-        return torch.stack([x / (1 + x), 1 / (1 + x)], dim=-1).flatten(1)
+        x = ratio.to(self.device, self.dtype).flatten(1)
+        second = 1 / (1 + x)
+        return torch.cat([x * second, second, self._constants.expand(len(x), -1)], dim=1)
 
     def _complete(self, h: Tensor, weight: Tensor, given: Tensor) -> Tensor:
         """Add the edge nodes and the v family, which rests on the h family."""
         batch = h.shape[0]
-        base = given.expand(batch, -1, -1)
-        nodes = base.index_copy(1, self._inner_h, h.flatten(1, 2))
-        ends = nodes[:, self._v_ends]
-        weights = weight.view(batch, -1, 2)[:, self._v_entry]
-        return nodes.index_copy(1, self._v_node, (weights[..., None] * ends).sum(dim=2))
+        held = torch.cat([h.flatten(1, 2), given.index_select(1, self._rim).expand(batch, -1, -1)], dim=1)
+        ends = held.index_select(1, self._v_ends).view(batch, 2, -1, 2)
+        weights = weight.index_select(1, self._v_weight).view(batch, 2, -1, 1)
+        return torch.cat([held, (weights * ends).sum(dim=1)], dim=1).index_select(1, self._place)
 
     def _build_stencil(self) -> None:
-        tables, width = self.tables, self.columns + 1
+        tables, (rows, width), voids = self.tables, (self.rows, self.columns + 1), self.rows * self.columns
         node, ends, void = barycentric_stencil(self.rows, self.columns)
-        entry_of = {int(number): k for k, number in enumerate(node)}
-        row_of = {int(number): divmod(k, width) for k, number in enumerate(tables.h[1:-1].ravel())}
-        pairs: list[tuple[int, int, int]] = []
-        known: list[tuple[int, int, int]] = []
-        for number, k in entry_of.items():
-            if number not in row_of:
-                continue
-            row, column = row_of[number]
-            for side, v_end in enumerate(ends[k]):
-                inner = entry_of.get(int(v_end))
-                if inner is None:
-                    known.append((2 * k + side, row * width + column, int(v_end)))
-                    continue
-                for other, h_end in enumerate(ends[inner]):
-                    target_row, target_column = row_of[int(h_end)]
-                    below = int(target_row > row)
-                    slot = ((below * self.rows + row) * width + column) * width + target_column
-                    pairs.append((2 * k + side, 2 * inner + other, slot))
-        free_v = [k for number, k in entry_of.items() if number not in row_of]
-        pair, known_table = np.array(pairs), np.array(known)
-        self._void = self._index(void)
-        self._pair = self._index(pair[:, :2].T)
-        self._pair_slot = self._index(pair[:, 2])
-        self._known_weight = self._index(known_table[:, 0])
-        self._known_slot = self._index(known_table[:, 1])
-        self._known_node = self._index(known_table[:, 2])
-        self._uniform = self._float(tables.uniform_nodes)
+        none, whole = 2 * voids, 2 * voids + 1
         inner_h = tables.h[1:-1].ravel()
-        self._inner_h = self._index(inner_h)
-        self._inner_h_given = self._float(tables.fixed[inner_h][:, None].astype(np.float64))
-        self._v_node = self._index(node[free_v])
-        self._v_ends = self._index(ends[free_v])
-        self._v_entry = self._index(np.array(free_v))
+        weight = np.stack([void, void + voids], axis=1)
+        stencil = {int(number): (ends[k], weight[k]) for k, number in enumerate(node)}
+        place_of = {int(number): divmod(k, width) for k, number in enumerate(inner_h)}
+        pair = np.full((4, rows, width), none)
+        known_weight = np.full((2, rows, width), none)
+        known_node = np.zeros_like(known_weight)
+        for number, (row, column) in place_of.items():
+            if number not in stencil:
+                known_weight[0, row, column], known_node[0, row, column] = whole, number
+                continue
+            for side, (v_end, share) in enumerate(zip(*stencil[number], strict=True)):
+                if int(v_end) not in stencil:
+                    known_weight[side, row, column], known_node[side, row, column] = share, v_end
+                    continue
+                for h_end, part in zip(*stencil[int(v_end)], strict=True):
+                    end_row, end_column = place_of[int(h_end)]
+                    way = 0 if end_row < row else 2
+                    pair[way, row, column] = share
+                    pair[way + 1, row, end_column] = part
+        free_v = np.array([k for k, number in enumerate(node) if int(number) not in place_of])
+        # Nodes in the order h rows, rest of the rim, free v nodes: where each number of the topology stands.
+        rim = np.setdiff1d(np.arange(tables.node_count), np.concatenate([inner_h, node[free_v]]))
+        place = np.argsort(np.concatenate([inner_h, rim, node[free_v]]))
+        self._pair = self._index(pair.ravel())
+        self._known_weight, self._known_node = self._index(known_weight.ravel()), self._index(known_node.ravel())
+        self._uniform = self._float(tables.uniform_nodes)
+        self._constants = self._float(np.array([[0.0, 1.0]]))
+        self._rim, self._place = self._index(rim), self._index(place)
+        self._v_ends = self._index(place[ends[free_v]].T.ravel())
+        self._v_weight = self._index(weight[free_v].T.ravel())
 
     def _build_rim(self) -> None:
         """How the given nodes follow each mouth: (R, N, 2)."""
@@ -266,23 +262,12 @@ class BatchedSlopes:
 
     def _adjoint(self, weight: Tensor) -> Tensor:
         """Outline rows times A^-1, on the free nodes void by void: (B, K, 2 L)."""
-        lattice, batch = self.lattice, weight.shape[0]
-        m, width = lattice.rows, lattice.columns + 1
-        to_h, to_v = self._carry(weight, self._v_on_h), self._carry(weight, self._h_on_v)
-        seen = self._reach_h + self._reach_v @ to_h
-        coupling = lattice._coupling(weight)
-        none = weight.new_zeros(batch, 1, width, width)
-        before = torch.cat([none, coupling[:, 1, :-1].mT], dim=1)
-        after = torch.cat([coupling[:, 0, 1:].mT, none], dim=1)
-        through_h = block_sweep(before, after, seen.mT.reshape(batch, m, width, -1)).flatten(1, 2)
-        through_v = self._reach_v.mT + to_v @ through_h
+        lattice = self.lattice
+        seen = self._reach_h + _carried(weight, self._v_on_h, self._reach_v[None])
+        rows = seen.view(len(weight), lattice.rows, lattice.columns + 1, -1)
+        through_h = paired_sweep(transposed(lattice._coupling(weight)), rows, first=1).flatten(1, 2)
+        through_v = self._reach_v + _carried(weight, self._h_on_v, through_h)
         return torch.cat([through_h, through_v], dim=1).index_select(1, self._free)
-
-    def _carry(self, weight: Tensor, table: tuple[Tensor, Tensor]) -> Tensor:
-        """Stencil weights as matrices (B, V, H): how free v nodes and h rows rest on each other."""
-        entry, slot = table
-        flat = weight.new_zeros(weight.shape[0], len(self._v_numbers) * self._h_count)
-        return flat.index_copy(1, slot, weight[:, entry]).view(-1, len(self._v_numbers), self._h_count)
 
     def _build_tables(self) -> None:
         lattice = self.lattice
@@ -291,52 +276,37 @@ class BatchedSlopes:
         h_place = {int(number): k for k, number in enumerate(h_numbers)}
         v_numbers = [int(number) for number in node if int(number) not in h_place]
         v_place = {number: k for k, number in enumerate(v_numbers)}
-        self._h_count, self._v_numbers = len(h_numbers), v_numbers
-        on_h: list[tuple[int, int]] = []
-        on_v: list[tuple[int, int]] = []
-        for k, number in enumerate(node):
-            for side, end in enumerate(ends[k]):
+        on_h: list[list[tuple[int, int]]] = [[] for _ in h_place]
+        on_v: list[list[tuple[int, int]]] = [[] for _ in v_place]
+        for number, resting, owner in zip(node, ends, void, strict=True):
+            for end, share in zip(resting, (owner, owner + lattice.rows * lattice.columns), strict=True):
                 if int(number) in v_place and int(end) in h_place:
-                    on_h.append((2 * k + side, v_place[int(number)] * self._h_count + h_place[int(end)]))
+                    on_h[h_place[int(end)]].append((v_place[int(number)], share))
                 if int(number) in h_place and int(end) in v_place:
-                    on_v.append((2 * k + side, v_place[int(end)] * self._h_count + h_place[int(number)]))
+                    on_v[v_place[int(end)]].append((h_place[int(number)], share))
         self._v_on_h, self._h_on_v = self._table(on_h), self._table(on_v)
-        place = np.array([h_place[int(k)] if int(k) in h_place else self._h_count + v_place[int(k)] for k in node])
+        place = np.array([h_place[int(k)] if int(k) in h_place else len(h_place) + v_place[int(k)] for k in node])
         # The two free nodes of each void: all first ones, then all second ones.
         pair = np.argsort(void, kind="stable").reshape(-1, 2).T.ravel()
         self._free = lattice._index(place[pair])
         self._first, self._second = lattice._index(ends[pair, 0]), lattice._index(ends[pair, 1])
-        self._reach_h = self._reach[:, lattice._index(h_numbers)]
-        self._reach_v = self._reach[:, lattice._index(np.array(v_numbers))]
+        self._reach_h = self._reach[:, lattice._index(h_numbers)].T.contiguous()
+        self._reach_v = self._reach[:, lattice._index(np.array(v_numbers))].T.contiguous()
 
-    def _table(self, entries: list[tuple[int, int]]) -> tuple[Tensor, Tensor]:
-        pairs = np.array(entries).reshape(-1, 2)
-        return self.lattice._index(pairs[:, 0]), self.lattice._index(pairs[:, 1])
+    def _table(self, resting: list[list[tuple[int, int]]]) -> Tensor:
+        """The two nodes that rest on each, and their weights: (2, 2, n), 0 of a lacking one."""
+        lacking = (0, 2 * self.lattice.rows * self.lattice.columns)
+        return self.lattice._index(np.array([[*nodes, lacking, lacking][:2] for nodes in resting]).transpose(2, 1, 0))
 
 
-def block_sweep(lower: Tensor, upper: Tensor, right: Tensor) -> Tensor:
-    """Solve h_i = lower_i h_{i-1} + upper_i h_{i+1} + right_i by the block Thomas algorithm.
-
-    Parameters
-    ----------
-    lower, upper : (B, m, w, w) tensors
-    right : (B, m, w, R) tensor
-
-    Returns
-    -------
-    h : (B, m, w, R) tensor
-    """
-    width = lower.shape[-1]
-    identity = torch.eye(width, device=lower.device, dtype=lower.dtype)
-    transfer, offset = [upper[:, 0]], [right[:, 0]]
-    for i in range(1, lower.shape[1]):
-        factors, pivots, _ = torch.linalg.lu_factor_ex(identity - lower[:, i] @ transfer[-1])
-        transfer.append(torch.linalg.lu_solve(factors, pivots, upper[:, i]))
-        offset.append(torch.linalg.lu_solve(factors, pivots, torch.baddbmm(right[:, i], lower[:, i], offset[-1])))
-    h = [offset[-1]]
-    for i in range(lower.shape[1] - 2, -1, -1):
-        h.append(torch.baddbmm(offset[i], transfer[i], h[-1]))
-    return torch.stack(h[::-1], dim=1)
+def _carried(weight: Tensor, table: Tensor, rows: Tensor) -> Tensor:
+    """Rows (1 or B, ., R) of the nodes that rest on each of ``table``, weighted: (B, n, R)."""
+    (one, other), (of_one, of_other) = table
+    return torch.addcmul(
+        weight.index_select(1, of_one)[..., None] * rows.index_select(1, one),
+        weight.index_select(1, of_other)[..., None],
+        rows.index_select(1, other),
+    )
 
 
 def deployed(even: Tensor, odd: Tensor, phi: float | Tensor) -> Tensor:

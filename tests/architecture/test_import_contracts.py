@@ -28,7 +28,7 @@ class Fault:
 
 
 ONE_WAY = "Data flows one way; packages on one line do not import each other"
-TORCH = "Only generator, lab and lattice.batched import torch"
+TORCH = "Only generator, lab and the batched lattice import torch"
 BATCHED = "Only packages with torch import lattice.batched"
 EZDXF = "Only export.dxf, export.dxf_reading, outlines.read_dxf and outlines.dxf_regions import ezdxf"
 DASK = "Only foundation.processes imports Dask"

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).resolve().parents[2] / "kirigami_studio"
-KNOWS_TORCH = {"kirigami_studio.lattice.batched"}
+KNOWS_TORCH = {"kirigami_studio.lattice.batched", "kirigami_studio.lattice.paired_sweep"}
 CORE = ("foundation", "lattice", "outlines", "evaluate", "fabricate", "mechanics", "polish", "export", "project")
 LOADED = """
 import importlib, json, sys
