@@ -1,4 +1,4 @@
-"""Block-tridiagonal systems whose couplings have half rank, solved for many designs in torch.
+"""Block-tridiagonal systems of half-rank couplings, solved for many designs in torch.
 
 Two neighbours in a row of h nodes rest on one v node before and on one after, and these on two neighbours of the next
 row each.  So rows of w unknowns see each other through w / 2 sums only; the block Thomas algorithm solves for these,
