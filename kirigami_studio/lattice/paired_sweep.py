@@ -9,7 +9,7 @@ of the batched dense solve that stalls in torch 2.13 for n > 150 with two MKL th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 import torch
@@ -96,7 +96,7 @@ class _PairTables:
     spread: Tensor
 
 
-@cache
+@lru_cache(maxsize=32)
 def _pair_tables(rows: int, width: int, first: int, device: torch.device) -> _PairTables:
     pairs, size, none = width // 2, rows * width, -1
     row, column = np.arange(rows)[:, None], np.arange(width)

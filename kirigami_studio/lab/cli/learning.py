@@ -394,11 +394,19 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
         "--free-rims": arguments.free_rims,
         "--symmetric": arguments.symmetric,
         "--drawn-share": arguments.drawn_share,
-        "--design-share": arguments.design_share,
+        "--design-share": arguments.design_share or 0.0,
     }
     for option, share in shares.items():
         if share > 1.0:
             raise UsageError("training.share_above_one", option=option, share=share)
+    distilling = {
+        name: value
+        for name in ("design_share", "flow_weight", "likeness_weight")
+        if (value := getattr(arguments, name)) is not None
+    }
+    if distilling and arguments.designs is None:
+        options = ", ".join("--" + name.replace("_", "-") for name in distilling)
+        raise UsageError("training.nothing_to_distil", options=options)
     prior = starting_model(arguments.start)
     begin = None if arguments.go_on is None else starting_model(arguments.go_on, "accuracy")
     designs = None if arguments.designs is None else FirstDesigns.load(Path(arguments.designs))
@@ -418,9 +426,7 @@ def _align(arguments: argparse.Namespace, process: Process) -> None:
         free_rims=arguments.free_rims,
         symmetric_share=arguments.symmetric,
         designs=designs.digest if designs else "",
-        design_share=arguments.design_share,
-        flow_weight=arguments.flow_weight,
-        likeness_weight=arguments.likeness_weight,
+        **distilling,
         seed=arguments.seed,
         shape=replace(AlignSettings(prior.digest).shape, rims=arguments.free_rims > 0.0),
     )

@@ -64,11 +64,16 @@ class BlockArchive:
             with opened_file(path, LARGEST_FILE) as file, np.load(file, allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in cls.arrays()}
                 about = json.loads(str(archive["about"]))
-            if len({len(rows) for rows in arrays.values()}) > 1:
-                raise ValueError("arrays of other lengths")
+            found = cls(**arrays, about=about)  # type: ignore[call-arg]  # of a dataclass
+            found.check()
         except Exception as error:  # zipfile and NumPy raise a dozen kinds on damaged archives
             raise KirigamiError("training.fits_unreadable", path=path) from error
-        return cls(**arrays, about=about)  # type: ignore[call-arg]  # of a dataclass
+        return found
+
+    def check(self) -> None:
+        """Raise a ValueError where the arrays cannot be rows of one archive."""
+        if len({len(getattr(self, name)) for name in self.arrays()}) > 1:
+            raise ValueError("arrays of other lengths")
 
     @property
     def digest(self) -> str:

@@ -92,6 +92,16 @@ class FirstDesigns(BlockArchive):
 
     SEEN: ClassVar[tuple[str, ...]] = ("z", "requested", "grid", "symmetry", "behind")
 
+    def check(self) -> None:
+        """Raise a ValueError where rows have no such grid or symmetry, too."""
+        BlockArchive.check(self)
+        if self.z.shape[1:] != (MOST_VOIDS,) or self.requested.shape[1:] != (REQUESTED_POINTS, 2):
+            raise ValueError("rows of another size")
+        if self.grid.shape[1:] != (2,) or (self.grid < 2).any() or (self.grid.prod(axis=1) > MOST_VOIDS).any():
+            raise ValueError("grids that no sheet has")
+        if not set(np.unique(self.symmetry)) <= {"", *Symmetry.__members__}:
+            raise ValueError("symmetries that are none")
+
 
 def design_shapes(
     path: Path, shapes: int, seed: int, workers: Workers = HERE, block_size: int = BLOCK

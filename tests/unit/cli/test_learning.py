@@ -66,6 +66,13 @@ def test_that_first_designs_are_written_and_distilled(
     assert settings["designs"] == first_designs.FirstDesigns.load(written).digest
 
 
+def test_that_weights_of_distilling_need_designs(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    words = ["train", "align", "--design-share", "0.5", "--flow-weight", "1", "--out", str(tmp_path / "run")]
+    assert main(words) == 2
+    assert "--design-share, --flow-weight belongs to --designs" in capsys.readouterr().err
+    assert not (tmp_path / "run").exists()
+
+
 @pytest.mark.usefixtures("small_runs")
 def test_that_training_begins_with_the_bundled_weights_and_sees_the_fits(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, fits: Path

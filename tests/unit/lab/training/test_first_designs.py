@@ -160,10 +160,21 @@ def test_that_a_mirror_turns_with_its_sheet() -> None:
     assert turned_symmetry(Symmetry.LEFT_RIGHT, lattice_moves(5, 7)[1]) is Symmetry.LEFT_RIGHT
 
 
-def test_that_an_archive_whose_arrays_differ_in_length_is_damaged(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "damage",
+    [
+        {"behind": np.zeros(1, np.float32)},
+        {"symmetry": np.array(["", "DIAGONAL"])},
+        {"grid": np.array([[4, 4], [4, 400]])},
+        {"grid": np.array([[4, 4], [0, 4]])},
+        {"z": np.zeros((2, 16), np.float32)},
+    ],
+    ids=["lengths", "symmetry", "large grid", "empty grid", "short rows"],
+)
+def test_that_an_archive_of_rows_that_cannot_be_is_damaged(tmp_path: Path, damage: dict[str, np.ndarray]) -> None:
     whole = made([np.zeros((4, 4))] * 2, ["", ""], [0.0, 0.0])
     whole.save(tmp_path / "whole.npz")
     assert len(FirstDesigns.load(tmp_path / "whole.npz").z) == 2
-    replace(whole, behind=whole.behind[:1]).save(tmp_path / "damaged.npz")
+    replace(whole, **damage).save(tmp_path / "damaged.npz")
     with refused(KirigamiError, "training.fits_unreadable", path=tmp_path / "damaged.npz"):
         FirstDesigns.load(tmp_path / "damaged.npz")
