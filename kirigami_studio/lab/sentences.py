@@ -83,7 +83,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "--feedback belongs to the perceptron: the U-Net sees only the target's mask. Leave it out."
     ),
     "training.nothing_to_distil": mark(
-        "{options} belongs to --designs. Leave it out, or give a file of first designs."
+        "Only first designs can be distilled. Give a file of them with --designs, or leave out {options}."
     ),
     "training.channels_not_whole": mark(
         "--channels must be whole numbers separated by commas, such as 64,128,256,384, got '{channels:.40}'."

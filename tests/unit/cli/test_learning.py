@@ -69,7 +69,7 @@ def test_that_first_designs_are_written_and_distilled(
 def test_that_weights_of_distilling_need_designs(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     words = ["train", "align", "--design-share", "0.5", "--flow-weight", "1", "--out", str(tmp_path / "run")]
     assert main(words) == 2
-    assert "--design-share, --flow-weight belongs to --designs" in capsys.readouterr().err
+    assert "with --designs, or leave out --design-share, --flow-weight." in capsys.readouterr().err
     assert not (tmp_path / "run").exists()
 
 
