@@ -14,7 +14,7 @@ Reflections are never used: a sheet shows its target only the right way round.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -59,6 +59,9 @@ RIVAL = 0.01
 #: What half a turn counts as when two places are about equally good: the user would turn a design less.
 TURN_PENALTY = 2e-4
 
+#: Places of one outline that are closer than this (radians, shares of its size, lengths) slide to one summit.
+SAME_PLACE = 0.01
+
 #: Share of the band's weight that every boundary point keeps, so that no direction is left without curvature.
 LEAST_WEIGHT = 0.1
 
@@ -88,12 +91,22 @@ PAIRS_AT_ONCE = 30_000
 ROUNDS = 2
 
 
+#: Pairs of four numbers, and the pair in each place of a 4 x 4 table row by row.
+PAIRS = np.triu_indices(4)
+PAIR_OF = np.array([0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 7, 8, 3, 6, 8, 9])
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Boundaries:
     """Outlines as sums over short parts, ready for boundary integrals."""
 
     points: ComplexArray  #: (B, Q); midpoints of parts of the edges
     steps: ComplexArray  #: (B, Q); those parts as vectors
+
+    def fluxes(self) -> FloatArray:
+        """What crosses each part per unit of log scale, rotation, x and y of the outline's own frame: (B, 4, Q)."""
+        moment = np.conj(self.points) * self.steps
+        return np.stack([moment.imag, -moment.real, self.steps.imag, -self.steps.real], axis=1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -195,7 +208,7 @@ def align_near(moving: npt.ArrayLike, fixed: npt.ArrayLike, pose: Similarity) ->
     for _, parts, bands in STAGES:
         factor, shift, iou = _ascended(outlines.boundaries(parts), target, factor, shift, bands)
     place = Placement(complex(factor[0, 0]), complex(shift[0, 0]), float(iou[0, 0]))
-    place = _slid(outlines.vertices[0], target, place)
+    place = _slid(outlines.vertices[0], target, _measured(outlines.vertices[0], target, place))
     return target.to_source.compose(Similarity.from_complex(place.factor, place.shift)).compose(to_normal)
 
 
@@ -268,12 +281,13 @@ def _ascended(
         Width of the band around the target's outline that gives the curvature, one entry a step (lengths of a target
         of area 1): wide ones far from the summit.
     """
+    ascent = _Ascent(outlines, target)
     best = np.full(factor.shape, -np.inf)
     step = np.zeros((*factor.shape, 4))
     share = np.ones(factor.shape)
     trial_factor, trial_shift = factor, shift
     for band in (*bands, None):
-        intersection, union, depth = _overlap(outlines, target, trial_factor, trial_shift)
+        intersection, union, depth = ascent.overlap(trial_factor, trial_shift)
         iou = intersection / union
         better = iou > best
         best = np.where(better, iou, best)
@@ -281,7 +295,7 @@ def _ascended(
         shift = np.where(better, trial_shift, shift)
         if band is None:
             break
-        fresh = _newton_step(outlines, target, trial_factor, intersection, union, depth, band)
+        fresh = ascent.newton_step(trial_factor, intersection, union, depth, band)
         step = np.where(better[..., newaxis], fresh, step)
         # A failed step is retried shorter from the best place; successes lengthen it again.
         share = np.where(better, np.minimum(1.6 * share, 1.6), 0.35 * share)
@@ -291,51 +305,52 @@ def _ascended(
     return factor, shift, best
 
 
-def _overlap(
-    outlines: Boundaries, target: AlignmentTarget, factor: ComplexArray, shift: ComplexArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Tabulated intersection and union areas (B, S), and depth of the boundary points (B, S, Q).
+class _Ascent:
+    """Tabulated overlap of outlines with a target, and Newton steps, in any place of the outlines.
 
-    Parameters
-    ----------
-    factor, shift : (B, S) complex
-        Places to try: outline b goes to ``factor[b, s] * p + shift[b, s]``.
+    A place ``factor[b, s] * p + shift[b, s]`` multiplies what crosses the parts of an outline that moves in its own
+    frame by the square of the scale alone, so that all sums over parts are products with tables made once.
     """
-    places = factor[..., newaxis] * outlines.points[:, newaxis] + shift[..., newaxis]
-    found = target.lookup(places)
-    rise = (factor[..., newaxis] * outlines.steps[:, newaxis]).imag
-    intersection = (found.real * rise).sum(axis=-1)
-    return intersection, np.abs(factor) ** 2 + 1.0 - intersection, found.imag
 
+    def __init__(self, outlines: Boundaries, target: AlignmentTarget) -> None:
+        self._target, self._points = target, outlines.points[:, newaxis]
+        self._steps = np.stack([outlines.steps.real, outlines.steps.imag], axis=-1)
+        flux = outlines.fluxes()
+        self._through = flux.sum(axis=2)[:, newaxis]
+        self._flux = np.swapaxes(flux, 1, 2)
+        # Products of two of the four that cross a part, by its length: each pair once.
+        squares = flux[:, PAIRS[0]] * (flux / np.maximum(np.abs(outlines.steps), 1e-12)[:, newaxis])[:, PAIRS[1]]
+        self._squares = np.swapaxes(squares, 1, 2)
 
-def _newton_step(
-    outlines: Boundaries,
-    target: AlignmentTarget,
-    factor: ComplexArray,
-    intersection: FloatArray,
-    union: FloatArray,
-    depth: FloatArray,
-    band: float,
-) -> FloatArray:
-    """Ascent step (B, S, 4) in (log scale, rotation, x, y).
+    def overlap(self, factor: ComplexArray, shift: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Tabulated intersection and union areas in places (B, S), and depth of the boundary points (B, S, Q)."""
+        found = self._target.lookup(factor[..., newaxis] * self._points + shift[..., newaxis])
+        along = found.real @ self._steps
+        intersection = factor.imag * along[..., 0] + factor.real * along[..., 1]
+        return intersection, factor.real**2 + factor.imag**2 + 1.0 - intersection, found.imag
 
-    With v the velocity of the boundary and n ds its outward normal, dI is the loop integral of v.n ds over the part
-    inside the target, dA the same over the whole boundary, and U^2 d(I/U) = (U + I) dI - I dA.  The second derivative
-    of I sits where the two outlines cross; a tent of width ``band`` in the depth stands for that delta function.
-    """
-    moment = np.conj(outlines.points) * outlines.steps
-    swept = (np.abs(factor) ** 2)[..., newaxis] * moment[:, newaxis]
-    steps = factor[..., newaxis] * outlines.steps[:, newaxis]
-    flux = np.stack([swept.imag, -swept.real, steps.imag, -steps.real], axis=-2)
-    inside = np.clip(0.5 + depth / target.step, 0.0, 1.0)
-    both = (union + intersection)[..., newaxis]
-    gradient = np.matmul(flux, (both * inside - intersection[..., newaxis])[..., newaxis])
-    tent = np.maximum(1.0 - np.abs(depth) / band, LEAST_WEIGHT)
-    weight = both / band * tent / np.maximum(np.abs(steps), 1e-12)
-    curvature = np.matmul(flux * weight[..., newaxis, :], np.swapaxes(flux, -1, -2))
-    damping = DAMPING * np.trace(curvature, axis1=-2, axis2=-1)[..., newaxis, newaxis] * np.eye(4)
-    step: FloatArray = np.linalg.solve(curvature + damping, gradient)[..., 0]
-    return step
+    def newton_step(
+        self, factor: ComplexArray, intersection: FloatArray, union: FloatArray, depth: FloatArray, band: float
+    ) -> FloatArray:
+        """Ascent step (B, S, 4) in (log scale, rotation, x, y).
+
+        With v the velocity of the boundary and n ds its outward normal, dI is the loop integral of v.n ds over the part
+        inside the target, dA the same over the whole boundary, and U^2 d(I/U) = (U + I) dI - I dA.  The second
+        derivative of I sits where the two outlines cross; a tent of width ``band`` in the depth stands for that delta
+        function.
+        """
+        square, both = factor.real**2 + factor.imag**2, union + intersection
+        inside = np.minimum(np.maximum(depth / self._target.step + 0.5, 0.0), 1.0)
+        gradient = both[..., newaxis] * (inside @ self._flux) - intersection[..., newaxis] * self._through
+        tent = np.maximum(1.0 - np.abs(depth) / band, LEAST_WEIGHT)
+        curvature = (both * np.sqrt(square) / band)[..., newaxis] * (tent @ self._squares)[..., PAIR_OF]
+        # The same in the target's frame but for a rotation, where shifts are longer by the scale: so damping is fair.
+        trace = curvature[..., 0] + curvature[..., 5] + (curvature[..., 10] + curvature[..., 15]) / square
+        curvature[..., 0:6:5] += (DAMPING * trace)[..., newaxis]
+        curvature[..., 10::5] += (DAMPING * trace * square)[..., newaxis]
+        own = np.linalg.solve(curvature.reshape(*square.shape, 4, 4), gradient[..., newaxis])[..., 0]
+        moved = factor * (own[..., 2] + 1j * own[..., 3])
+        return np.stack([own[..., 0], own[..., 1], moved.real, moved.imag], axis=-1)
 
 
 def _refined(vertices: ComplexArray, target: AlignmentTarget, places: Sequence[Placement]) -> Placement:
@@ -346,22 +361,34 @@ def _refined(vertices: ComplexArray, target: AlignmentTarget, places: Sequence[P
     """
     if places[0].iou < NEAR_COPY - TABLE_ERROR:
         return places[0]
-    measured = [_slid(vertices, target, place) for place in places]
-    top = max(place.iou for place in measured)
-    ties = [place for place in measured if place.iou >= top - TIE]
+    tops: list[Placement] = []
+    for place in sorted((_measured(vertices, target, place) for place in places), key=lambda one: -one.iou):
+        if all(_apart(place, top) > SAME_PLACE for top in tops):
+            tops.append(place)
+    slid = [_slid(vertices, target, top) for top in tops]
+    top = max(place.iou for place in slid)
+    ties = [place for place in slid if place.iou >= top - TIE]
     return min(ties, key=lambda place: abs(np.angle(place.factor)))
 
 
-def _slid(vertices: ComplexArray, target: AlignmentTarget, place: Placement) -> Placement:
+def _measured(vertices: ComplexArray, target: AlignmentTarget, place: Placement) -> Placement:
+    """A place with its exact IoU."""
+    return replace(place, iou=_exact_iou(vertices, target, place.factor, place.shift))
+
+
+def _apart(one: Placement, other: Placement) -> float:
+    return max(abs(one.factor / other.factor - 1.0), abs(one.shift - other.shift))
+
+
+def _slid(vertices: ComplexArray, target: AlignmentTarget, start: Placement) -> Placement:
     """Move a near-copy so that its boundary points meet the tangents at their nearest target points.
 
-    Least squares in the normal direction only, as in point-to-line registration.  Never worse by exact IoU, which the
-    result holds, than the given place; the given place itself unless that is a near-copy.
+    Least squares in the normal direction only, as in point-to-line registration.  Never worse by exact IoU, which both
+    hold, than the given place; the given place itself unless that is a near-copy.
     """
-    factor, shift = place.factor, place.shift
-    start = Placement(factor, shift, _exact_iou(vertices, target, factor, shift))
     if start.iou < NEAR_COPY:
         return start
+    factor, shift = start.factor, start.shift
     points, steps = edge_parts(vertices, SLIDING_PARTS)
     for _ in range(ROUNDS):
         arm = factor * points
@@ -374,7 +401,7 @@ def _slid(vertices: ComplexArray, target: AlignmentTarget, place: Placement) -> 
         move = np.linalg.lstsq(rows, (normal * gap).real, rcond=1e-9)[0]
         factor *= complex(np.exp(move[0] + 1j * move[1]))
         shift += complex(move[2], move[3])
-    end = Placement(factor, shift, _exact_iou(vertices, target, factor, shift))
+    end = _measured(vertices, target, Placement(factor, shift, start.iou))
     return end if end.iou > start.iou else start
 
 

@@ -153,6 +153,7 @@ class Rim:
             object.__setattr__(self, "hinges", frozen(np.zeros(0)))
 
     @classmethod
+    @cache
     def even(cls, rows: int, columns: int) -> Rim:
         """The paper's: mouths and hinges at whole positions."""
         return cls.moved(rows, columns, np.zeros(rim_table(rows, columns).even.size))
