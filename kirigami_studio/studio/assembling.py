@@ -123,32 +123,56 @@ def assembled(
     UsageError
         An ear that is no wider than its hole.
     """
-    options, hold = pin_options(settings), hold_options(settings)
-    machine = machine_for(settings) if options.in_one_plane else None
-    key = (candidate, target, settings.width_mm, options, machine, hold, settings.moved_by)
-    made = _KEPT.pop(key, None)
-    if made is None:
-        design = _posed(candidate)
-        try:
-            plan = pinned(design, target, settings.width_mm, options, only_whole)
-            report = check_pinned(plan)
-            if machine is not None:
-                more = print_problems(plan, material_for(settings), machine)
-                report = replace(report, problems=(*more, *report.problems))
-            places = held(plan, hold)
-        except GEOSException as error:  # floating point ended the geometry of this one design
-            raise FabricationError("pinned.not_made", reason=error) from error
-        plan = replace(plan, assembly=with_places(plan.assembly, places.places))
-        moved_by = settings.moved_by if machine is None else DriveKind.NONE
-        drive, refused = driven(plan, moved_by, partial(motions_on_pins, plan.assembly.deployment, settings))
-        report = replace(report, problems=(*report.problems, *places.problems, *refused))
-        figures = report.figures
-        motion = motion_on_pins(candidate.score.phi, figures.match, figures.flat_match)
-        made = Assembled(plan, report, motion, places, drive)
+    key = _key(candidate, settings, target)
+    made = _KEPT.get(key) or _made(candidate, settings, target, only_whole)
+    _keep(key, made)
+    return made
+
+
+def kept(candidate: Candidate, settings: FabricationSettings, target: Outline) -> Assembled | None:
+    """The pieces of a design if they were made lately."""
+    return _KEPT.get(_key(candidate, settings, target))
+
+
+def keep(candidate: Candidate, settings: FabricationSettings, target: Outline, made: Assembled) -> None:
+    """Keep the pieces that another process has made."""
+    _keep(_key(candidate, settings, target), made)
+
+
+def _keep(key: tuple[object, ...], made: Assembled) -> None:
     _KEPT[key] = made
+    _KEPT.move_to_end(key)
     while len(_KEPT) > MOST_KEPT:
         _KEPT.popitem(last=False)
-    return made
+
+
+def _key(candidate: Candidate, settings: FabricationSettings, target: Outline) -> tuple[object, ...]:
+    """All that pieces depend on."""
+    options, hold = pin_options(settings), hold_options(settings)
+    machine = machine_for(settings) if options.in_one_plane else None
+    return candidate, target, settings.width_mm, options, machine, hold, settings.moved_by
+
+
+def _made(candidate: Candidate, settings: FabricationSettings, target: Outline, only_whole: bool) -> Assembled:
+    options, hold = pin_options(settings), hold_options(settings)
+    machine = machine_for(settings) if options.in_one_plane else None
+    design = _posed(candidate)
+    try:
+        plan = pinned(design, target, settings.width_mm, options, only_whole)
+        report = check_pinned(plan)
+        if machine is not None:
+            more = print_problems(plan, material_for(settings), machine)
+            report = replace(report, problems=(*more, *report.problems))
+        places = held(plan, hold)
+    except GEOSException as error:  # floating point ended the geometry of this one design
+        raise FabricationError("pinned.not_made", reason=error) from error
+    plan = replace(plan, assembly=with_places(plan.assembly, places.places))
+    moved_by = settings.moved_by if machine is None else DriveKind.NONE
+    drive, refused = driven(plan, moved_by, partial(motions_on_pins, plan.assembly.deployment, settings))
+    report = replace(report, problems=(*report.problems, *places.problems, *refused))
+    figures = report.figures
+    motion = motion_on_pins(candidate.score.phi, figures.match, figures.flat_match)
+    return Assembled(plan, report, motion, places, drive)
 
 
 def _posed(candidate: Candidate) -> PosedDesign:

@@ -31,7 +31,7 @@ from kirigami_studio.lattice.symmetry import symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.starts import RECTANGLE, TURNS_BACK, StartShape, hollows
 from kirigami_studio.outlines.turning import sides_needed, turn_back
-from kirigami_studio.pipeline.best_as_cut import Looking, best_as_cut
+from kirigami_studio.pipeline.best_as_cut import MOST_PIECED, Looking, best_as_cut
 from kirigami_studio.pipeline.events import (
     CandidateFound,
     CandidateImproved,
@@ -453,7 +453,7 @@ def ranked_as_cut(
     """Rank designs with those beside them; report between the steps of every look.
 
     Whoever iterates may do other work at each report.  Workers that are ready look at the second design and those that
-    follow it; pieces on pins are made here, where they are kept for the files.
+    follow it, and make pieces on pins of a few designs at once.
     """
     from kirigami_studio.pipeline.pool import shared_pool
     from kirigami_studio.studio.as_cut import estimates
@@ -495,8 +495,12 @@ def ranked_as_cut(
             looked.clear()
             if isinstance(step, Looking):
                 progress = _looking_at(step.number, step.total)
-                if step.number == 2 and len(step.order) > 1 and not is_pinned(cut) and pool.ready:
-                    ahead = LooksAhead(pool, result.request, step.order, cut, cancel)
+                if ahead is not None and not ahead.has(step.order[0]):
+                    ahead.close()
+                    ahead = None
+                if ahead is None and len(step.order) > 1 and (is_pinned(cut) or step.number > 1) and pool.ready:
+                    several = step.order[: min(pool.size, MOST_PIECED)] if is_pinned(cut) else step.order
+                    ahead = LooksAhead(pool, result.request, several, cut, cancel)
             yield progress
     finally:
         if ahead is not None:

@@ -1,7 +1,9 @@
 """Close looks at several designs of a run at once, by the worker processes that fitted them.
 
-The first design is mostly the one that is cut, so it is looked at by the program itself, which keeps its plan.  Where
-it does not decide, all that follow are looked at by workers, in the order in which they are asked for.
+The first design of one sheet is mostly the one that is cut, so it is looked at by the program itself, which keeps its
+plan.  Where it does not decide, all that follow are looked at by workers, in the order in which they are asked for.
+Pieces on pins take longest, and the first seldom decides: workers make those of the first few at once, and hand them
+over.
 """
 
 from __future__ import annotations
@@ -17,7 +19,8 @@ from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import LOOK
 from kirigami_studio.pipeline.tasks import TaskResult
-from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.settings.fabrication import FabricationSettings, is_pinned
+from kirigami_studio.studio.assembling import Assembled, keep, kept
 from kirigami_studio.studio.verdict import CloseLook, looking
 
 
@@ -26,6 +29,7 @@ class LookResult(TaskResult):
     """Result of a :class:`LookTask`."""
 
     look: CloseLook | None = None
+    made: Assembled | None = None  #: The pieces of a design on pins, where they could be made
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +57,10 @@ class LookTask:
             try:
                 next(steps)
             except StopIteration as end:
-                return LookResult(None, 0, look=end.value)
+                found: CloseLook = end.value
+                known = is_pinned(self.settings) and found.as_cut is not None
+                made = kept(self.candidate, self.settings, self.target) if known else None
+                return LookResult(None, 0, look=found, made=made)
             if stopped():
                 raise Cancelled("plan.stopped")
 
@@ -80,9 +87,14 @@ class LooksAhead:
         cancel: Callable[[], bool],
     ) -> None:
         self._candidates, self._cancel = candidates, cancel
+        self._settings, self._target = settings, request.target
         tasks = [LookTask(one, settings, request.target) for one in candidates]
         self._answers = pool.answers(request, list(enumerate(tasks)), LOOK)
         self._found: dict[Candidate, CloseLook] = {}
+
+    def has(self, one: Candidate) -> bool:
+        """Whether a design is among those that are looked at."""
+        return one in self._candidates
 
     def look(self, one: Candidate) -> Generator[None, None, CloseLook | None]:
         """Wait for the look at a design, between signs of life; None without workers.
@@ -100,7 +112,10 @@ class LooksAhead:
             if self._cancel():
                 raise Cancelled("plan.stopped")
             if report is not None and isinstance(report[1], LookResult) and report[1].look is not None:
-                self._found[self._candidates[report[0]]] = report[1].look
+                looked = self._candidates[report[0]]
+                self._found[looked] = report[1].look
+                if report[1].made is not None:
+                    keep(looked, self._settings, self._target, report[1].made)
             yield
         return self._found[one]
 

@@ -1,0 +1,49 @@
+"""Pieces on pins are made by workers, several designs at once, and kept by the program that asked for them."""
+
+from __future__ import annotations
+
+import time
+from contextlib import closing
+
+import pytest
+
+from kirigami_studio.evaluate.candidate import Candidate
+from kirigami_studio.foundation.steps import never, result_of
+from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.pool import Pool
+from kirigami_studio.pipeline.run import fits_from_uniform
+from kirigami_studio.settings.design import DesignSettings
+from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.studio import assembling
+from kirigami_studio.studio.assembling import Assembled, assembled, kept
+from kirigami_studio.studio.designing import ranked_as_cut, request_for
+
+PLYWOOD = FabricationSettings(material="plywood-co2", width_mm=240.0)
+
+
+def test_that_workers_make_pieces_of_several_designs_and_hand_them_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    target = load("heart")
+    request = request_for(target, DesignSettings((6, 6), auto_grid=False, k=8), PLYWOOD)
+    found = [task.carry_out(request, never).candidate for task in fits_from_uniform(request)[:2]]
+    candidates = tuple(one for one in found if one is not None)
+    result = Result(request, candidates, 8, 0.0)
+    alone = result_of(ranked_as_cut(result, PLYWOOD, (), never, Pool(0)))
+    made = {one: assembled(one, PLYWOOD, target) for one in alone.losses}
+    assert made
+
+    assembling._KEPT.clear()
+    here: list[Candidate] = []
+    monkeypatch.setattr(assembling, "pinned", lambda *given: here.append(given[0]))
+    with closing(Pool(2)) as pool:
+        pool.start()
+        while not pool.ready:
+            time.sleep(0.05)
+        together = result_of(ranked_as_cut(result, PLYWOOD, (), never, pool))
+    assert together == alone and together.losses == alone.losses and together.as_cut == alone.as_cut
+    for one, before in made.items():
+        pieces = kept(one, PLYWOOD, target)
+        assert isinstance(pieces, Assembled) and pieces.report == before.report
+        assert assembled(one, PLYWOOD, target) is pieces
+        assert [each.id for each in pieces.assembly.pieces] == [each.id for each in before.assembly.pieces]
+    assert not here
