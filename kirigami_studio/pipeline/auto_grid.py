@@ -39,10 +39,11 @@ from kirigami_studio.polish.symmetry import KeptSymmetry, SymmetricPose, shared_
 COARSEST, FINEST = 6, 16
 #: The same of pinned sheets, whose pieces somebody has to put together.
 COARSEST_PINNED, FINEST_PINNED = 3, 10
-#: Most rows of upright ones, and most panels.
-HIGHEST, MOST_PIECES = 14, 91
-#: Distances between pins (unit cells) that sheets have room for.
-MOST_GAP = 0.375
+#: Most rows of upright ones, and most panels; and of those for shapes that pieces of a usual grid show badly.
+HIGHEST, MOST_PIECES, MOST_SMALL_PIECES = 14, 91, 121
+#: Distances between pins (unit cells) that sheets have room for, and those with small pieces: on 10 x 10 a clover of
+#: 240 mm in plywood has room for 0.413.
+MOST_GAP, SMALL_GAP = 0.375, 0.42
 #: Fewest voids; coarser grids match simple shapes, but hardly show how a sheet opens.
 FEWEST_VOIDS, FEWEST_PINNED = 99, 49
 #: The coarsest grid with at least this predicted match is taken.
@@ -371,6 +372,50 @@ def _tried(request: Request, trials: Trials) -> GridChoice:
     return GridChoice(best.grid, tuple(kept), best.match, code, tuple(fields.items()))
 
 
+def on_smaller_pieces(request: Request) -> GridChoice | None:
+    """The grid of smaller pieces that is expected to match best, for a target that pieces on the run's grid show badly.
+
+    None where the pins leave no room for smaller ones.  Pins come nearer than on grids that are chosen at once.
+    """
+    rows, columns = request.chosen_grid
+    finer = [
+        one
+        for one in _upright(request, MOST_SMALL_PIECES, SMALL_GAP, START_ROOM)
+        if one.panels > (rows + 1) * (columns + 1) and one.start_error <= MOST_START_ERROR_PINNED
+    ]
+    best = max(finer, key=lambda one: one.match, default=None)
+    if best is None:
+        return None
+    poses = shared_symmetries(request.silhouette, best.grid, request.symmetry, request.start, pinned=True)
+    fields = {"rows": best.grid[0], "columns": best.grid[1]}
+    return GridChoice(best.grid, tuple(poses), best.match, "grid.smaller_pieces", tuple(fields.items()))
+
+
+def remember(request: Request, choice: GridChoice) -> None:
+    """Keep a choice for requests that depend on the same: it turned out to be the better one."""
+    _CHOSEN.pop(_key(request), None)
+    remembered(_CHOSEN, _key(request), lambda: choice)
+
+
+def _upright(request: Request, most: int, gap: float = MOST_GAP, start_room: float = LONGER_CELLS) -> list[_Candidate]:
+    """Grids of pinned sheets of at most so many pieces, square or upright, whose pins may be ``gap`` cells apart."""
+    target, start, least = request.silhouette, request.start, request.least_feature_mm
+    widest = gap * request.width_mm / request.least_gap_mm
+    widest = min(widest, SMALLEST_SHARE * request.width_mm / least) if least > 0.0 else widest
+    found = _candidates(
+        target,
+        ShapeFigures.of(target),
+        _poses(target, request.symmetry, start, pinned=True),
+        HIGHEST,
+        start,
+        start_room=start_room,
+        coarsest=COARSEST_PINNED,
+        upright=True,
+        odd=not start.is_plain,
+    )
+    return [one for one in found if one.width <= widest and one.panels <= most]
+
+
 def _tried_upright(request: Request, choice: GridChoice, trials: Trials) -> GridChoice:
     """The grid of a pinned sheet: of as many pieces, square or upright, whichever short fits match better.
 
@@ -379,25 +424,7 @@ def _tried_upright(request: Request, choice: GridChoice, trials: Trials) -> Grid
     target, start = request.silhouette, request.start
     if choice.predicted_match >= TRIED_BELOW:
         return choice
-    poses = _poses(target, request.symmetry, start, pinned=True)
-    least = request.least_feature_mm
-    widest = MOST_GAP * request.width_mm / request.least_gap_mm
-    widest = min(widest, SMALLEST_SHARE * request.width_mm / least) if least > 0.0 else widest
-    near = [
-        one
-        for one in _candidates(
-            target,
-            ShapeFigures.of(target),
-            poses,
-            HIGHEST,
-            start,
-            start_room=LONGER_CELLS,
-            coarsest=COARSEST_PINNED,
-            upright=True,
-            odd=not start.is_plain,
-        )
-        if one.width <= widest and one.panels <= MOST_PIECES
-    ]
+    near = _upright(request, MOST_PIECES)
     if start.is_plain:
         picked = _apart([one for one in near if one.grid[0] * one.grid[1] >= FEWEST_PINNED])[:UPRIGHT_TRIED]
         worth = _worth(request, picked, trials) if len(picked) > 1 else {}

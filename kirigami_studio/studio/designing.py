@@ -248,7 +248,7 @@ def run_design(
     Cancelled
         ``cancel`` returned true.
     """
-    from kirigami_studio.pipeline.run import grid_choice, run, start_choice, with_grid
+    from kirigami_studio.pipeline.run import grid_choice, start_choice, with_grid
 
     if request.start.is_auto and request.near is None:
         yield Progress(0, request.k, tr("Choosing the start"))
@@ -261,41 +261,75 @@ def run_design(
         yield GridChosen(choice.grid, choice.reason)
     request = _with_sizes(with_grid(request), cut, least_panel_mm)
     whole = RunProgress(request)
-    for event in _whole_run(run(request, cancel, pool), request, cut, beside, only_new, cancel, pool):
+    for event in _whole_run(request, cut, least_panel_mm, beside, only_new, cancel, pool):
         yield whole.placed(event) if isinstance(event, Progress) else event
 
 
 def _whole_run(
-    designing: Iterator[Event],
     request: Request,
     cut: FabricationSettings,
+    least_panel_mm: float,
     beside: tuple[Candidate, ...],
     only_new: bool,
     cancel: Cancel,
     pool: Pool | None,
-) -> Iterator[Event | Judged]:
+) -> Iterator[Event | GridChosen | Judged]:
     """Designs, ranked as cut, and what follows from that."""
-    from kirigami_studio.pipeline.run import covered_on_pins, trimmed_further
+    from kirigami_studio.pipeline.auto_grid import on_smaller_pieces, remember
+    from kirigami_studio.pipeline.run import covered_on_pins, run, trimmed_further
 
+    result = yield from _new_designs(run(request, cancel, pool), beside, only_new)
+    began = time.perf_counter()
+    result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
+    for _ in range(TRIMMED_FURTHER):
+        if not wants_other_trims(result):
+            break
+        result = yield from trimmed_further(result, cancel, pool)
+        result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
+    smaller = on_smaller_pieces(request) if wants_smaller_pieces(result) else None
+    if smaller is not None:
+        finer = _with_sizes(replace(request, grid=smaller.grid), cut, least_panel_mm)
+        events = (event for event in run(finer, cancel, pool) if isinstance(event, Progress | Finished))
+        other = yield from _new_designs(events, beside, only_new)
+        other = yield from ranked_as_cut(other, cut, beside, cancel, pool)
+        if _worth_of_first(other) > _worth_of_first(result):
+            remember(request, smaller)
+            yield GridChosen(smaller.grid, smaller.reason)
+            yield from (CandidateFound(one.index, one) for one in sorted(other.candidates, key=lambda one: one.index))
+            evaluations = result.forward_evaluations + other.forward_evaluations
+            result = replace(other, seconds=result.seconds + other.seconds, forward_evaluations=evaluations)
+    if wants_covers_on_pins(result):
+        result = yield from covered_on_pins(result, cancel, pool)
+        result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
+    yield Finished(replace(result, judging_seconds=time.perf_counter() - began))
+
+
+def _new_designs(
+    designing: Iterator[Event], beside: tuple[Candidate, ...], only_new: bool
+) -> Generator[Event, None, Result]:
+    """Pass on the events of a run to its end; of its designs all, or those that are new, come back."""
     for event in designing:
-        if not isinstance(event, Finished):
-            yield event
-            continue
-        result, began = event.result, time.perf_counter()
-        if only_new:
+        if isinstance(event, Finished):
+            result = event.result
+            if not only_new:
+                return result
             # Comparing a thousand designs with a thousand takes a second.
             new = distinct(result.candidates, beside)
-            result = replace(result, candidates=new, repeats=len(result.candidates) - len(new))
-        result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
-        for _ in range(TRIMMED_FURTHER):
-            if not wants_other_trims(result):
-                break
-            result = yield from trimmed_further(result, cancel, pool)
-            result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
-        if wants_covers_on_pins(result):
-            result = yield from covered_on_pins(result, cancel, pool)
-            result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
-        yield Finished(replace(result, judging_seconds=time.perf_counter() - began))
+            return replace(result, candidates=new, repeats=len(result.candidates) - len(new))
+        yield event
+    raise Cancelled("run.no_result")
+
+
+def _worth_of_first(result: Result) -> float:
+    """Worth of the first design as made; minus infinity without designs."""
+    return max((result.ranking.worth_as_made(one) for one in result.candidates[:1]), default=-math.inf)
+
+
+def wants_smaller_pieces(result: Result) -> bool:
+    """Whether the run chose a grid whose pieces show the target badly."""
+    request = result.request
+    free = request.grid_chosen and request.near is None and request.budget_seconds is None
+    return free and wants_covers_on_pins(result)
 
 
 def wants_covers_on_pins(result: Result) -> bool:

@@ -177,6 +177,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
         "{rows} x {columns}: finer than the outline needs, so that holes and the walls beside them are no smaller than "
         "panels allow. Expected match: {percent:.1f} %."
     ),
+    "grid.smaller_pieces": mark("{rows} x {columns}: larger pieces on pins show less of the shape."),
     "grid.panels_would_be_too_small": mark(
         "{rows} x {columns}: on a finer grid, panels of a sheet {width_mm:.0f} mm wide would be smaller than "
         "{least_mm:.2g} mm. Expected match: {percent:.1f} %."

@@ -501,7 +501,9 @@ class DesignRun(QObject):
             case GridChosen(grid, reason):
                 self.grid_reason = reason
                 if self._request is not None:
-                    self._request = self._request.resolved(grid)
+                    self._request = replace(self._request, grid=grid, grid_chosen=True)
+                self._latest.clear()  # a run that takes another grid in the end reports its designs anew
+                self._sampled.clear()
                 self._session.set_status(reason)
                 self.grid_chosen.emit()
             case StartChosen(start, reason):
