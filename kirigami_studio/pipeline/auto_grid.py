@@ -373,9 +373,10 @@ def _tried(request: Request, trials: Trials) -> GridChoice:
 
 
 def on_smaller_pieces(request: Request) -> GridChoice | None:
-    """The grid of smaller pieces that is expected to match best, for a target that pieces on the run's grid show badly.
+    """Choose the grid of smaller pieces that is expected to match best.
 
-    None where the pins leave no room for smaller ones.  Pins come nearer than on grids that are chosen at once.
+    For a target that pieces on the request's grid show badly.  None where the pins leave no room for smaller ones; they
+    may come nearer than on grids that are chosen at once.
     """
     rows, columns = request.chosen_grid
     finer = [
@@ -398,7 +399,10 @@ def remember(request: Request, choice: GridChoice) -> None:
 
 
 def _upright(request: Request, most: int, gap: float = MOST_GAP, start_room: float = LONGER_CELLS) -> list[_Candidate]:
-    """Grids of pinned sheets of at most so many pieces, square or upright, whose pins may be ``gap`` cells apart."""
+    """Grids of pinned sheets, square or upright, of at most so many pieces.
+
+    Pins need no more than ``gap`` cells between them.
+    """
     target, start, least = request.silhouette, request.start, request.least_feature_mm
     widest = gap * request.width_mm / request.least_gap_mm
     widest = min(widest, SMALLEST_SHARE * request.width_mm / least) if least > 0.0 else widest

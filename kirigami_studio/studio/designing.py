@@ -307,7 +307,7 @@ def _whole_run(
 def _new_designs(
     designing: Iterator[Event], beside: tuple[Candidate, ...], only_new: bool
 ) -> Generator[Event, None, Result]:
-    """Pass on the events of a run to its end; of its designs all, or those that are new, come back."""
+    """Pass on the events of a run, and return its result: all designs, or those that are new."""
     for event in designing:
         if isinstance(event, Finished):
             result = event.result
