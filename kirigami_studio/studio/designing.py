@@ -275,7 +275,6 @@ def _whole_run(
     pool: Pool | None,
 ) -> Iterator[Event | GridChosen | Judged]:
     """Designs, ranked as cut, and what follows from that."""
-    from kirigami_studio.pipeline.auto_grid import on_smaller_pieces, remember
     from kirigami_studio.pipeline.run import covered_on_pins, run, trimmed_further
 
     result = yield from _new_designs(run(request, cancel, pool), beside, only_new)
@@ -286,22 +285,52 @@ def _whole_run(
             break
         result = yield from trimmed_further(result, cancel, pool)
         result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
-    smaller = on_smaller_pieces(request) if wants_smaller_pieces(result) else None
-    if smaller is not None:
-        finer = _with_sizes(replace(request, grid=smaller.grid), cut, least_panel_mm)
-        events = (event for event in run(finer, cancel, pool) if isinstance(event, Progress | Finished))
-        other = yield from _new_designs(events, beside, only_new)
-        other = yield from ranked_as_cut(other, cut, beside, cancel, pool)
-        if _worth_of_first(other) > _worth_of_first(result):
-            remember(request, smaller)
-            yield GridChosen(smaller.grid, smaller.reason)
-            yield from (CandidateFound(one.index, one) for one in sorted(other.candidates, key=lambda one: one.index))
-            evaluations = result.forward_evaluations + other.forward_evaluations
-            result = replace(other, seconds=result.seconds + other.seconds, forward_evaluations=evaluations)
+    if wants_smaller_pieces(result):
+        before = result.seconds
+        result = yield from _with_smaller_pieces(result, cut, least_panel_mm, beside, only_new, cancel, pool)
+        began += result.seconds - before  # designing is no judging
     if wants_covers_on_pins(result):
         result = yield from covered_on_pins(result, cancel, pool)
         result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
     yield Finished(replace(result, judging_seconds=time.perf_counter() - began))
+
+
+def _with_smaller_pieces(
+    result: Result,
+    cut: FabricationSettings,
+    least_panel_mm: float,
+    beside: tuple[Candidate, ...],
+    only_new: bool,
+    cancel: Cancel,
+    pool: Pool | None,
+) -> Generator[Event | GridChosen | Judged, None, Result]:
+    """Run on a grid of smaller pieces, and return the result with the better first design.
+
+    It has the time of both runs.
+    """
+    from kirigami_studio.pipeline.auto_grid import on_smaller_pieces, remember
+    from kirigami_studio.pipeline.run import run
+
+    choice = on_smaller_pieces(result.request)
+    if choice is None:
+        return result
+    try:
+        request = _with_sizes(replace(result.request, grid=choice.grid), cut, least_panel_mm)
+        events = (event for event in run(request, cancel, pool) if isinstance(event, Progress | Finished))
+        other = yield from _new_designs(events, beside, only_new)
+        other = yield from ranked_as_cut(other, cut, beside, cancel, pool)
+    except Cancelled:
+        raise
+    except KirigamiError:  # what was found before stays
+        return result
+    both, best = (result, other), result
+    if _worth_of_first(other) > _worth_of_first(result):
+        best = other
+        remember(request, choice)
+        yield GridChosen(choice.grid, choice.reason)
+        yield from (CandidateFound(one.index, one) for one in sorted(other.candidates, key=lambda one: one.index))
+    evaluations = sum(one.forward_evaluations for one in both)
+    return replace(best, seconds=sum(one.seconds for one in both), forward_evaluations=evaluations)
 
 
 def _new_designs(

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
-from kirigami_studio.foundation.errors import Cancelled
+from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.pipeline import auto_grid
@@ -51,7 +52,7 @@ def outcome(request: Request) -> tuple[Result, list[object]]:
 
 
 @pytest.mark.torch
-@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("sign", [1, -1, 0])
 def test_that_the_grid_with_the_better_first_design_is_taken_and_remembered(
     monkeypatch: pytest.MonkeyPatch, sign: int
 ) -> None:
@@ -61,12 +62,21 @@ def test_that_the_grid_with_the_better_first_design_is_taken_and_remembered(
     monkeypatch.setattr(designing, "wants_covers_on_pins", lambda result: False)
     monkeypatch.setattr(designing, "_worth_of_first", lambda result: float(sign * result.request.chosen_grid[0]))
     coarse = chosen_for(request).grid
+    if not sign:  # what fails keeps what was found before
+        sized = designing._with_sizes
+
+        def coarse_alone(asked: Request, *more: Any) -> Request:
+            if asked.grid != coarse:
+                raise FabricationError("pinned.not_made", reason="")
+            return sized(asked, *more)
+
+        monkeypatch.setattr(designing, "_with_sizes", coarse_alone)
     found, events = outcome(request)
     named = [event.grid for event in events if isinstance(event, GridChosen)]
     last = [event.candidate for event in events if isinstance(event, CandidateFound)][-len(found.candidates) :]
     assert all(one.sheet.grid == found.request.grid for one in found.candidates)
     assert found.ranking.cuttable(found.best) and found.losses
-    if sign < 0:
+    if sign <= 0:
         assert named == [coarse] == [found.request.grid]
     else:
         assert named == [coarse, found.request.grid] and found.request.chosen_grid > coarse
