@@ -91,9 +91,9 @@ PAIRS_AT_ONCE = 30_000
 ROUNDS = 2
 
 
-#: Pairs of four numbers, and the pair in each place of a 4 x 4 table row by row.
-PAIRS = np.triu_indices(4)
-PAIR_OF = np.array([0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 7, 8, 3, 6, 8, 9])
+#: Products of two of four numbers, each once, and which of them stands in each place of a 4 x 4 table, row by row.
+PRODUCTS = np.triu_indices(4)
+PRODUCT_AT = np.array([0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 7, 8, 3, 6, 8, 9])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,7 +104,7 @@ class Boundaries:
     steps: ComplexArray  #: (B, Q); those parts as vectors
 
     def fluxes(self) -> FloatArray:
-        """What crosses each part per unit of log scale, rotation, x and y of the outline's own frame: (B, 4, Q)."""
+        """Flux through each part by log scale, rotation, x and y in the outline's own frame: (B, 4, Q)."""
         moment = np.conj(self.points) * self.steps
         return np.stack([moment.imag, -moment.real, self.steps.imag, -self.steps.real], axis=1)
 
@@ -319,7 +319,7 @@ class _Ascent:
         self._through = flux.sum(axis=2)[:, newaxis]
         self._flux = np.swapaxes(flux, 1, 2)
         # Products of two of the four that cross a part, by its length: each pair once.
-        squares = flux[:, PAIRS[0]] * (flux / np.maximum(np.abs(outlines.steps), 1e-12)[:, newaxis])[:, PAIRS[1]]
+        squares = flux[:, PRODUCTS[0]] * (flux / np.maximum(np.abs(outlines.steps), 1e-12)[:, newaxis])[:, PRODUCTS[1]]
         self._squares = np.swapaxes(squares, 1, 2)
 
     def overlap(self, factor: ComplexArray, shift: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -343,7 +343,7 @@ class _Ascent:
         inside = np.minimum(np.maximum(depth / self._target.step + 0.5, 0.0), 1.0)
         gradient = both[..., newaxis] * (inside @ self._flux) - intersection[..., newaxis] * self._through
         tent = np.maximum(1.0 - np.abs(depth) / band, LEAST_WEIGHT)
-        curvature = (both * np.sqrt(square) / band)[..., newaxis] * (tent @ self._squares)[..., PAIR_OF]
+        curvature = (both * np.sqrt(square) / band)[..., newaxis] * (tent @ self._squares)[..., PRODUCT_AT]
         # The same in the target's frame but for a rotation, where shifts are longer by the scale: so damping is fair.
         trace = curvature[..., 0] + curvature[..., 5] + (curvature[..., 10] + curvature[..., 15]) / square
         curvature[..., 0:6:5] += (DAMPING * trace)[..., newaxis]

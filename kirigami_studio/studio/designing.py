@@ -261,76 +261,74 @@ def run_design(
         yield GridChosen(choice.grid, choice.reason)
     request = _with_sizes(with_grid(request), cut, least_panel_mm)
     whole = RunProgress(request)
-    for event in _whole_run(request, cut, least_panel_mm, beside, only_new, cancel, pool):
+    for event in _WholeRun(cut, least_panel_mm, beside, only_new, cancel, pool).events(request):
         yield whole.placed(event) if isinstance(event, Progress) else event
 
 
-def _whole_run(
-    request: Request,
-    cut: FabricationSettings,
-    least_panel_mm: float,
-    beside: tuple[Candidate, ...],
-    only_new: bool,
-    cancel: Cancel,
-    pool: Pool | None,
-) -> Iterator[Event | GridChosen | Judged]:
-    """Designs, ranked as cut, and what follows from that."""
-    from kirigami_studio.pipeline.run import covered_on_pins, run, trimmed_further
+@dataclass(frozen=True, slots=True, eq=False)
+class _WholeRun:
+    """A run, ranked by how its designs do as cut, and what follows from that."""
 
-    result = yield from _new_designs(run(request, cancel, pool), beside, only_new)
-    began = time.perf_counter()
-    result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
-    for _ in range(TRIMMED_FURTHER):
-        if not wants_other_trims(result):
-            break
-        result = yield from trimmed_further(result, cancel, pool)
-        result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
-    if wants_smaller_pieces(result):
-        before = result.seconds
-        result = yield from _with_smaller_pieces(result, cut, least_panel_mm, beside, only_new, cancel, pool)
-        began += result.seconds - before  # designing is no judging
-    if wants_covers_on_pins(result):
-        result = yield from covered_on_pins(result, cancel, pool)
-        result = yield from ranked_as_cut(result, cut, beside, cancel, pool)
-    yield Finished(replace(result, judging_seconds=time.perf_counter() - began))
+    cut: FabricationSettings
+    least_panel_mm: float
+    beside: tuple[Candidate, ...]
+    only_new: bool
+    cancel: Cancel
+    pool: Pool | None
 
+    def events(self, request: Request) -> Iterator[Event | GridChosen | Judged]:
+        """All of it, ``Finished`` at last."""
+        from kirigami_studio.pipeline.run import covered_on_pins, run, trimmed_further
 
-def _with_smaller_pieces(
-    result: Result,
-    cut: FabricationSettings,
-    least_panel_mm: float,
-    beside: tuple[Candidate, ...],
-    only_new: bool,
-    cancel: Cancel,
-    pool: Pool | None,
-) -> Generator[Event | GridChosen | Judged, None, Result]:
-    """Run on a grid of smaller pieces, and return the result with the better first design.
+        result = yield from _new_designs(run(request, self.cancel, self.pool), self.beside, self.only_new)
+        began = time.perf_counter()
+        result = yield from self._ranked(result)
+        for _ in range(TRIMMED_FURTHER):
+            if not wants_other_trims(result):
+                break
+            result = yield from trimmed_further(result, self.cancel, self.pool)
+            result = yield from self._ranked(result)
+        if wants_smaller_pieces(result):
+            before = result.seconds
+            result = yield from self._with_smaller_pieces(result)
+            began += result.seconds - before  # designing is no judging
+        if wants_covers_on_pins(result):
+            result = yield from covered_on_pins(result, self.cancel, self.pool)
+            result = yield from self._ranked(result)
+        yield Finished(replace(result, judging_seconds=time.perf_counter() - began))
 
-    It has the time of both runs.
-    """
-    from kirigami_studio.pipeline.auto_grid import on_smaller_pieces, remember
-    from kirigami_studio.pipeline.run import run
+    def _ranked(self, result: Result) -> Generator[Progress | Judged, None, Result]:
+        return ranked_as_cut(result, self.cut, self.beside, self.cancel, self.pool)
 
-    choice = on_smaller_pieces(result.request)
-    if choice is None:
-        return result
-    try:
-        request = _with_sizes(replace(result.request, grid=choice.grid), cut, least_panel_mm)
-        events = (event for event in run(request, cancel, pool) if isinstance(event, Progress | Finished))
-        other = yield from _new_designs(events, beside, only_new)
-        other = yield from ranked_as_cut(other, cut, beside, cancel, pool)
-    except Cancelled:
-        raise
-    except KirigamiError:  # what was found before stays
-        return result
-    both, best = (result, other), result
-    if _worth_of_first(other) > _worth_of_first(result):
-        best = other
-        remember(request, choice)
-        yield GridChosen(choice.grid, choice.reason)
-        yield from (CandidateFound(one.index, one) for one in sorted(other.candidates, key=lambda one: one.index))
-    evaluations = sum(one.forward_evaluations for one in both)
-    return replace(best, seconds=sum(one.seconds for one in both), forward_evaluations=evaluations)
+    def _with_smaller_pieces(self, result: Result) -> Generator[Event | GridChosen | Judged, None, Result]:
+        """Run on a grid of smaller pieces, and return the result with the better first design.
+
+        It has the time of both runs.
+        """
+        from kirigami_studio.pipeline.auto_grid import on_smaller_pieces, remember
+        from kirigami_studio.pipeline.run import run
+
+        choice = on_smaller_pieces(result.request)
+        if choice is None:
+            return result
+        try:
+            request = _with_sizes(replace(result.request, grid=choice.grid), self.cut, self.least_panel_mm)
+            running = run(request, self.cancel, self.pool)
+            told = (event for event in running if isinstance(event, Progress | Finished))
+            other = yield from _new_designs(told, self.beside, self.only_new)
+            other = yield from self._ranked(other)
+        except Cancelled:
+            raise
+        except KirigamiError:  # what was found before stays
+            return result
+        both, best = (result, other), result
+        if _worth_of_first(other) > _worth_of_first(result):
+            best = other
+            remember(request, choice)
+            yield GridChosen(choice.grid, choice.reason)
+            yield from (CandidateFound(one.index, one) for one in sorted(other.candidates, key=lambda one: one.index))
+        evaluations = sum(one.forward_evaluations for one in both)
+        return replace(best, seconds=sum(one.seconds for one in both), forward_evaluations=evaluations)
 
 
 def _new_designs(

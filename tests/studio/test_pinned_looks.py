@@ -22,7 +22,7 @@ from kirigami_studio.studio.designing import ranked_as_cut, request_for
 PLYWOOD = FabricationSettings(material="plywood-co2", width_mm=240.0)
 
 
-def test_that_workers_make_pieces_of_several_designs_and_hand_them_over(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_that_workers_make_the_pieces_of_designs_and_hand_them_over(monkeypatch: pytest.MonkeyPatch) -> None:
     target = load("heart")
     request = request_for(target, DesignSettings((6, 6), auto_grid=False, k=8), PLYWOOD)
     found = [task.carry_out(request, never).candidate for task in fits_from_uniform(request)[:2]]
