@@ -56,15 +56,14 @@ class Basis:
         signed = derivative[self._order] * self.sign[self._order, None]
         return np.asarray(np.add.reduceat(signed, self._starts, axis=0))
 
-    def matrix(self, row: IntArray, column: IntArray, value: FloatArray) -> FloatArray:
-        """Second derivative (V, V) by the variables, from entries by numbers of the shape."""
-        if not self.is_whole:
-            value = value * self.sign[row] * self.sign[column]
-            row, column = self.variable[row], self.variable[column]
-            inside = (row < self.size) & (column < self.size)
-            row, column, value = row[inside], column[inside], value[inside]
-        flat = np.bincount(row * self.size + column, value, self.size * self.size)
-        return np.asarray(flat, dtype=np.float64).reshape(self.size, self.size)
+    def entries(self, row: IntArray, column: IntArray, value: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+        """Entries (row, column, value) of a second derivative by the variables, from those by numbers of the shape."""
+        if self.is_whole:
+            return row, column, value
+        value = value * self.sign[row] * self.sign[column]
+        row, column = self.variable[row], self.variable[column]
+        inside = (row < self.size) & (column < self.size)
+        return row[inside], column[inside], value[inside]
 
     def moved(self, step: FloatArray) -> FloatArray:
         """How a step (V,) of the variables moves the shape: (S,)."""

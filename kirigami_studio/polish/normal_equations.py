@@ -14,16 +14,26 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy.linalg.lapack import dgesv, dpotrf, dtrtrs, spotrf, strtrs
 from scipy.sparse import csr_matrix
 
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 
-#: From this many variables on, and with this much damping, single precision factors the matrix in half of the time: its
-#: step is as good, and what it promises and gains is counted in double precision.
-SINGLE, SINGLE_DAMPING = 800, 1e-5
+#: From this many variables on, and with this much damping, a matrix of single precision is made and factored in half of
+#: the time: its step is as good, and what it gains is counted in double precision.
+SINGLE, SINGLE_DAMPING = 600, 1e-5
 #: Share of the mean of the diagonal that the damping adds to each entry.
 FLOOR = 1e-3
+#: The damping of a matrix that rounding has made indefinite grows by these factors.
+GROWN = (1.0, 10.0, 100.0)
+#: In single or double precision.
+Matrix = FloatArray | npt.NDArray[np.float32]
+
+
+def single_suffices(variables: int, damping: float) -> bool:
+    """Whether a step's matrix may be of single precision."""
+    return variables >= SINGLE and damping >= SINGLE_DAMPING
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,7 +41,7 @@ class Quadratic:
     """The objective around one state, by V variables."""
 
     gradient: FloatArray  #: (V,)
-    inner: FloatArray  #: (V, V); second derivative of all that is not the match; symmetric
+    inner: Matrix  #: (V, V); second derivative of all that is not the match; symmetric
     outline: FloatArray  #: (2 L, V); derivative of the outline
     #: (2 L, 2 L); Gauss-Newton approximation of the second derivative of the match by the outline; symmetric.
     spread: FloatArray | csr_matrix
@@ -50,7 +60,7 @@ class Quadratic:
     def promised(self, step: FloatArray) -> float:
         """Gain that the quadratic model foresees for a step (V,)."""
         moved = self.outline @ step
-        bent = float(step @ (self.inner @ step)) + float(moved @ (self.spread @ moved))
+        bent = float(step @ (self.inner @ step.astype(self.inner.dtype))) + float(moved @ (self.spread @ moved))
         return -float(step @ self.gradient) - 0.5 * bent
 
 
@@ -59,30 +69,32 @@ class Damped:
     """A quadratic with damping, factored for several steps."""
 
     held: BoolArray  #: (V,); variables that do not move
-    _factor: FloatArray
-    _reach: FloatArray
+    _factor: Matrix
+    _reach: Matrix
     _compliance: FloatArray
 
     @classmethod
     def of(cls, model: Quadratic, damping: float, held: BoolArray) -> Damped:
         """Factor a model with a damping relative to its diagonal, (V,) variables ``held`` where they are."""
-        diagonal = model.diagonal()
-        inner, outline = model.inner.copy(), model.outline
-        inner.ravel()[:: len(inner) + 1] += damping * (diagonal + FLOOR * diagonal.mean())
+        single, outline, diagonal = model.inner.dtype == np.float32, model.outline, model.diagonal()
+        potrf, trtrs = (spotrf, strtrs) if single else (dpotrf, dtrtrs)
         if held.any():
             outline = outline.copy()
-            inner[held], inner[:, held], outline[:, held] = 0.0, 0.0, 0.0
-            inner[held, held] = 1.0
-        # LAPACK itself: at small grids SciPy's own checks take longer than the work.  A symmetric matrix is its own
-        # transpose, which is stored as LAPACK wants it.
-        if len(inner) >= SINGLE and damping >= SINGLE_DAMPING:
-            factor, failed = spotrf(inner.T, lower=1, clean=0)
+            outline[:, held] = 0.0
+        for grown in GROWN:
+            inner = model.inner.copy()
+            added = grown * damping * (diagonal + FLOOR * diagonal.mean())
+            inner.ravel()[:: len(inner) + 1] += added.astype(inner.dtype)
+            if held.any():
+                inner[held], inner[:, held] = 0.0, 0.0
+                inner[held, held] = 1.0
+            # LAPACK itself: at small grids SciPy's own checks take longer than the work.  A symmetric matrix is its own
+            # transpose, which is stored as LAPACK wants it.
+            factor, failed = potrf(inner.T, lower=1, clean=0, overwrite_a=1)
             if not failed:
-                reach = strtrs(factor, outline.T, lower=1)[0]
-                return cls(held, factor, reach, (reach.T @ reach).astype(np.float64))
-        factor = dpotrf(inner.T, lower=1, clean=0, overwrite_a=1)[0]
-        reach = dtrtrs(factor, outline.T, lower=1)[0]
-        return cls(held, factor, reach, reach.T @ reach)
+                break
+        reach = trtrs(factor, outline.T, lower=1)[0]
+        return cls(held, factor, reach, np.asarray(reach.T @ reach, dtype=np.float64))
 
     def step(self, gradient: FloatArray, spread: FloatArray | csr_matrix, stiffer: float = 1.0) -> FloatArray:
         """The step (V,) for a gradient (V,) and a ``spread`` (2 L, 2 L), with all but the match times ``stiffer``."""

@@ -229,16 +229,21 @@ class Objective:
             outline = np.concatenate([outline, other])
         return Slopes(basis, outline, motion, stiffness, centroids)
 
-    def quadratic(self, look: Look, slopes: Slopes, opening: FloatArray | None = None) -> Quadratic:
+    def quadratic(
+        self, look: Look, slopes: Slopes, opening: FloatArray | None = None, *, single: bool = False
+    ) -> Quadratic:
         """Gradient and Gauss-Newton approximation at a state, from the derivatives there or nearby.
 
-        ``opening`` (V, V) is that of open junctions at a state nearby, to be used again, see :meth:`opening`.
+        ``opening`` (V, V) is that of open junctions at a state nearby, to be used again, see :meth:`opening`; a large
+        matrix may be of ``single`` precision.
         """
-        inner = np.zeros((slopes.outline.shape[1],) * 2)
+        size, kind = slopes.outline.shape[1], np.float32 if single else np.float64
+        inner = np.zeros((size, size), dtype=kind)
         shape, basis, own = self._parts(look.state)[0], slopes.basis, inner[: -self.poses, : -self.poses]
-        own += basis.matrix(*self.terms.curvature(shape[: self.model.voids]))
+        row, column, value = basis.entries(*self.terms.curvature(shape[: self.model.voids]))
+        np.add.at(inner.ravel(), row * size + column, value.astype(kind))
         if self.even is not None and slopes.stiffness is not None:
-            own += self.phase.even * slopes.stiffness
+            own += np.multiply(self.phase.even, slopes.stiffness, dtype=kind, casting="same_kind")
         opening = self.opening(look, slopes) if opening is None else opening
         if opening is not None:
             own += opening

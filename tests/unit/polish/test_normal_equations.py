@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from kirigami_studio.foundation.arrays import FloatArray
-from kirigami_studio.polish import normal_equations
-from kirigami_studio.polish.normal_equations import FLOOR, Damped, Quadratic
+from kirigami_studio.polish.normal_equations import FLOOR, SINGLE, SINGLE_DAMPING, Damped, Quadratic, single_suffices
 
 VARIABLES, COORDINATES = 30, 12
 
@@ -64,15 +65,28 @@ def test_that_a_model_can_be_factored_again(model: Quadratic) -> None:
     np.testing.assert_array_equal(model.outline, outline)
 
 
-def test_that_much_damping_is_factored_in_single_precision_and_little_in_double(
-    model: Quadratic, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    none, step = np.zeros(VARIABLES, dtype=np.bool_), {}
-    for least in (VARIABLES + 1, VARIABLES):
-        monkeypatch.setattr(normal_equations, "SINGLE", least)
-        for damping in (1e-2, 1e-7):
-            step[least, damping] = Damped.of(model, damping, none).step(model.gradient, model.spread)
-    np.testing.assert_allclose(step[VARIABLES, 1e-2], step[VARIABLES + 1, 1e-2], rtol=1e-3, atol=1e-4)
-    assert step[VARIABLES, 1e-2].dtype == np.float64
-    assert not np.array_equal(step[VARIABLES, 1e-2], step[VARIABLES + 1, 1e-2])
-    np.testing.assert_array_equal(step[VARIABLES, 1e-7], step[VARIABLES + 1, 1e-7])
+@pytest.mark.parametrize("held", [[], [3], [0, 7, 8, 29]])
+def test_that_a_matrix_of_single_precision_gives_the_same_step(model: Quadratic, held: list[int]) -> None:
+    flags = np.isin(np.arange(VARIABLES), held)
+    single = replace(model, inner=model.inner.astype(np.float32))
+    step, other = (Damped.of(one, 1e-2, flags).step(model.gradient, model.spread) for one in (model, single))
+    np.testing.assert_allclose(other, step, rtol=1e-3, atol=1e-4)
+    assert other.dtype == np.float64
+    assert not np.array_equal(other, step)
+    assert single.promised(step) == pytest.approx(model.promised(step), rel=1e-5)
+
+
+def test_that_a_matrix_that_rounding_has_made_indefinite_is_damped_more(model: Quadratic) -> None:
+    none = np.zeros(VARIABLES, dtype=np.bool_)
+    values, vectors = np.linalg.eigh(model.inner)
+    bent = replace(model, inner=(vectors * np.append(-3e-5, values[1:])) @ vectors.T)
+    with pytest.raises(np.linalg.LinAlgError):
+        np.linalg.cholesky(bent.inner + 1e-7 * np.diag(bent.diagonal()))
+    step, damped_more = (Damped.of(bent, damping, none).step(model.gradient, model.spread) for damping in (1e-7, 1e-6))
+    np.testing.assert_allclose(step, damped_more, rtol=1e-6)
+
+
+def test_that_large_matrices_are_of_single_precision_while_they_are_damped() -> None:
+    assert single_suffices(SINGLE, SINGLE_DAMPING)
+    assert not single_suffices(SINGLE - 1, 1.0)
+    assert not single_suffices(SINGLE, 0.9 * SINGLE_DAMPING)
