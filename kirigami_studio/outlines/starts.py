@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -41,6 +41,8 @@ ACCURACY = 1e-4
 UPRIGHT = 1e-3
 #: Weight of a start unless another is asked for.
 USUAL_WEIGHT = 1.0
+#: Share of its weight by which a start is held loosely.
+LOOSE = 0.01
 #: What :func:`start_shape` reads beside files and library names.
 KINDS = ("auto", "rectangle", "square", "circle", "ellipse", "triangle", "hexagon", "gable", "notch")
 #: Rectangles with a fifth corner on the axis, and with a notch there.
@@ -100,6 +102,10 @@ class StartShape:
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", plain_line(self.name))
         check(self)
+
+    def held_loosely(self) -> StartShape:
+        """The same start for sheets whose pieces are cut to it afterwards; rectangles are met at any weight."""
+        return self if self.outline is None else replace(self, weight=LOOSE * self.weight)
 
     @property
     def is_plain(self) -> bool:

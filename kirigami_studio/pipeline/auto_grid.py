@@ -373,7 +373,7 @@ def _tried(request: Request, trials: Trials) -> GridChoice:
 
 
 def on_smaller_pieces(request: Request) -> GridChoice | None:
-    """Choose the grid of smaller pieces that is expected to match best.
+    """Choose the grid of smaller pieces that is expected to match best; of another start, the one of its proportions.
 
     For a target that pieces on the request's grid show badly.  None where the pins leave no room for smaller ones; they
     may come nearer than on grids that are chosen at once.
@@ -384,10 +384,15 @@ def on_smaller_pieces(request: Request) -> GridChoice | None:
         for one in _upright(request, MOST_SMALL_PIECES, SMALL_GAP, START_ROOM)
         if one.panels > (rows + 1) * (columns + 1) and one.start_error <= MOST_START_ERROR_PINNED
     ]
-    best = max(finer, key=lambda one: one.match, default=None)
+    start = request.start
+
+    def wanted(one: _Candidate) -> tuple[float, float]:
+        return 0.0 if start.is_plain else -abs(one.proportion - start.proportion(1, 1)), one.match
+
+    best = max(finer, key=wanted, default=None)
     if best is None:
         return None
-    poses = shared_symmetries(request.silhouette, best.grid, request.symmetry, request.start, pinned=True)
+    poses = shared_symmetries(request.silhouette, best.grid, request.symmetry, start, pinned=True)
     fields = {"rows": best.grid[0], "columns": best.grid[1]}
     return GridChoice(best.grid, tuple(poses), best.match, "grid.smaller_pieces", tuple(fields.items()))
 

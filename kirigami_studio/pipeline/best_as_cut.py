@@ -11,6 +11,7 @@ themselves do, so those that could still pass the best are looked at too, up to 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -22,9 +23,10 @@ from kirigami_studio.pipeline.rank import Ranking
 
 #: Designs that are looked at closely, cuts and all, at most.
 MOST_LOOKED_AT = 32
-#: Designs whose pieces are made although one that was looked at comes before them, with it; what pieces are hoped to
-#: gain of all that a sheet misses; and what they gain when they are worth making.  Of 8 designs each for a star and a
-#: butterfly at 240 mm, pieces gain 0.45 to 0.91 of it, and the best pieces are those of the second to fourth sheet.
+#: Designs of a family whose pieces are made although one that was looked at comes before them, with it; what pieces are
+#: hoped to gain of all that a sheet misses; and what they gain when they are worth making.  Of 8 designs each for a
+#: star and a butterfly at 240 mm, pieces gain 0.45 to 0.91 of it, and the best pieces are those of the second to fourth
+#: sheet.
 MOST_PIECED, HOPED, WORTHWHILE = 4, 0.9, 0.002
 
 
@@ -112,7 +114,11 @@ def _order(left: Sequence[Candidate], ranking: Ranking, losses: Mapping[Candidat
     unseen = tuple(one for one in ranked if one not in losses)
     if not ranked or ranked[0] not in losses:
         return unseen
-    if not ranking.least_gap_mm or len(losses) >= MOST_PIECED:
+    if not ranking.least_gap_mm:
         return ()
-    enough = ranking.worth_as_made(ranked[0]) + WORTHWHILE
-    return tuple(one for one in unseen if ranking.worth_as_made(one) + HOPED * (1.0 - one.match) > enough)
+    enough, pieced = ranking.worth_as_made(ranked[0]) + WORTHWHILE, Counter(one.family for one in losses)
+    return tuple(
+        one
+        for one in unseen
+        if pieced[one.family] < MOST_PIECED and ranking.worth_as_made(one) + HOPED * (1.0 - one.match) > enough
+    )

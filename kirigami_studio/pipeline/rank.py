@@ -51,7 +51,7 @@ SYMMETRY_SEEN = (0.95, 0.975)
 #: tenth of its sheet comes first where it matches better by 1 %.
 GIVEN_UP = 0.1
 #: The same of pinned sheets: pieces of whole ones are cut along the target, too, and show both ends of the motion.
-GIVEN_UP_ON_PINS = 0.25
+GIVEN_UP_ON_PINS = 0.2
 #: Share of the distance of pins from which on pieces are made and checked: of seven sheets of an hourglass from a disk
 #: none kept it, by 1 % at most, and the pieces of the best had nothing to be said of their pins.
 NEARLY_APART = 0.97

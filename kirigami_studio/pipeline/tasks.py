@@ -272,6 +272,7 @@ class PinnedCoverTask:
     """Fit a pinned sheet to the target with its notches filled, and give up the panels in them.
 
     The fit begins with the pinwheel of a ``hand``; notches are filled until the shape turns back by ``easy`` (radians).
+    It holds the start loosely, which pieces are cut to.
     """
 
     index: int
@@ -285,8 +286,8 @@ class PinnedCoverTask:
         filled = notches_filled(request.silhouette, self.easy, self.easy)
         if filled is None:
             return TaskResult(None, 0)
-        grid, options, phi = request.chosen_grid, request.fit_options, request.phi
-        way = Way.suited_to(filled.outline)[0]
+        grid, phi, way = request.chosen_grid, request.phi, Way.suited_to(filled.outline)[0]
+        options = replace(request.fit_options, start=request.start.held_loosely())
         with one_blas_thread():
             fit = fit_from_uniform(
                 filled.outline, grid, phi, self.angle, way, options, self.symmetry, stopped, self.hand

@@ -303,20 +303,20 @@ class _WholeRun:
     def _with_smaller_pieces(self, result: Result) -> Generator[Event | GridChosen | Judged, None, Result]:
         """Run on a grid of smaller pieces, and return the result with the better first design.
 
-        It has the time of both runs.
+        The start is held loosely: pieces are cut to it.  The result has the time of both runs.
         """
         from kirigami_studio.pipeline.auto_grid import on_smaller_pieces, remember
         from kirigami_studio.pipeline.run import run
 
-        choice = on_smaller_pieces(result.request)
+        choice, start = on_smaller_pieces(result.request), result.request.start
         if choice is None:
             return result
         try:
             request = _with_sizes(replace(result.request, grid=choice.grid), self.cut, self.least_panel_mm)
-            running = run(request, self.cancel, self.pool)
+            running = run(replace(request, start=start.held_loosely()), self.cancel, self.pool)
             told = (event for event in running if isinstance(event, Progress | Finished))
             other = yield from _new_designs(told, self.beside, self.only_new)
-            other = yield from self._ranked(other)
+            other = yield from self._ranked(replace(other, request=request))
         except Cancelled:
             raise
         except KirigamiError:  # what was found before stays
@@ -518,6 +518,7 @@ def ranked_as_cut(
     """
     from kirigami_studio.pipeline.pool import shared_pool
     from kirigami_studio.studio.as_cut import estimates
+    from kirigami_studio.studio.assembling import kept
     from kirigami_studio.studio.looking_ahead import LooksAhead
     from kirigami_studio.studio.verdict import CloseLook, looking
 
@@ -536,7 +537,7 @@ def ranked_as_cut(
     ahead: LooksAhead | None = None
 
     def look(one: Candidate) -> Generator[None, None, CloseLook]:
-        found = None if ahead is None else (yield from ahead.look(one))
+        found = None if ahead is None or not ahead.has(one) else (yield from ahead.look(one))
         if found is None:
             found = yield from looking(one, cut, target, cancel)
         if found.as_cut is not None:
@@ -556,11 +557,14 @@ def ranked_as_cut(
             looked.clear()
             if isinstance(step, Looking):
                 progress = _looking_at(step.number, step.total)
-                if ahead is not None and not ahead.has(step.order[0]):
+                order = step.order
+                if is_pinned(cut) and kept(order[0], cut, target) is not None:
+                    order = order[:1]
+                elif ahead is not None and not ahead.has(order[0]):
                     ahead.close()
                     ahead = None
-                if ahead is None and len(step.order) > 1 and (is_pinned(cut) or step.number > 1) and pool.ready:
-                    several = step.order[: min(pool.size, MOST_PIECED)] if is_pinned(cut) else step.order
+                if ahead is None and len(order) > 1 and (is_pinned(cut) or step.number > 1) and pool.ready:
+                    several = order[: min(pool.size, MOST_PIECED)] if is_pinned(cut) else order
                     ahead = LooksAhead(pool, result.request, several, cut, cancel)
             yield progress
     finally:

@@ -93,8 +93,8 @@ HALF_WAY = 0.5
 NEARLY = "as_cut.nearly"
 #: What a close look lets pass: ranking counts the match that is lost.
 BEARABLE = frozenset({NEARLY, "as_cut.loses_match", "pinned.target_missed"})
-#: The same of covers on pins, whose ranking has a price for what they give up of the flat sheet.
-BEARABLE_OF_COVERS = BEARABLE | {"pinned.flat_outline_spoilt"}
+#: The same of covers on pins that do not miss the target: ranking has a price for what they give up of the flat sheet.
+BEARABLE_OF_COVERS = BEARABLE - {"pinned.target_missed"} | {"pinned.flat_outline_spoilt"}
 #: Warnings about a file that are about importing it, not about the sheet.
 ABOUT_IMPORTING = frozenset({"verify.no_unit_in_r12"})
 
@@ -488,8 +488,10 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made, settings)
     gained = made.report.figures.match - candidate.match
-    cover = candidate.trim is not None and candidate.trim.given_up
-    return CloseLook(_refusal(found.problems, BEARABLE_OF_COVERS if cover else BEARABLE), made.as_cut, gained)
+    refusal = _refusal(found.problems)
+    if candidate.trim is not None and candidate.trim.given_up and refusal is not None:
+        refusal = _refusal(found.problems, BEARABLE_OF_COVERS)
+    return CloseLook(refusal, made.as_cut, gained)
 
 
 def refused(error: KirigamiError) -> Verdict:

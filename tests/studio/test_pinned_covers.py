@@ -8,17 +8,22 @@ import pytest
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
 from kirigami_studio.evaluate.pins import GAP_ROUNDING
-from kirigami_studio.foundation.steps import never
+from kirigami_studio.fabricate.findings import Problem
+from kirigami_studio.foundation.steps import never, result_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline.events import Result
+from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.rank import Ranking
 from kirigami_studio.pipeline.redesign import refitted
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import PinnedCoverTask
+from kirigami_studio.pipeline.run import PINNED_COVERS, covered_on_pins, promise_on_pins
+from kirigami_studio.pipeline.tasks import PinnedCoverTask, TaskResult
 from kirigami_studio.polish.covering import EASY_TURN
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
+from kirigami_studio.studio import verdict
 from kirigami_studio.studio.assembling import assembled
 from kirigami_studio.studio.designing import gap_of, request_for, wants_covers_on_pins
 from kirigami_studio.studio.verdict import CloseLook, look_at
@@ -96,3 +101,38 @@ def test_that_covers_on_pins_are_made_where_pieces_miss_the_target(
     assert wants_covers_on_pins(result(0.94)) and not wants_covers_on_pins(result(0.96))
     assert not wants_covers_on_pins(result(0.94, two_layers=False))  # printed: pieces lie in one plane
     assert not wants_covers_on_pins(result(0.94, covers=False))
+
+
+def test_that_a_disk_is_covered_with_both_ends_of_the_motion_shown(clover: Outline) -> None:
+    disk = replace(DesignSettings((8, 8), auto_grid=False, k=8), start=start_shape("circle"))
+    task = PinnedCoverTask(8, 0.0, None, 1, EASY_TURN)
+    found = task.carry_out(request_for(clover, disk, PLYWOOD), never).candidate
+    assert found is not None
+    report = assembled(found, PLYWOOD, clover, only_whole=True).report
+    assert not report.problems
+    assert report.figures.match > 0.965 and report.figures.flat_match > 0.97
+
+
+def test_that_a_cover_that_shows_neither_end_is_refused(
+    cover: Candidate, clover: Outline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = assembled(cover, PLYWOOD, clover, only_whole=True)
+    codes = {"pinned.flat_outline_spoilt", "pinned.target_missed"}
+    for shown in (set(), *({code} for code in codes), codes):
+        problems = tuple(Problem.warning(code, lost=6.0, beyond=1.0) for code in sorted(shown))
+        spoilt = replace(made, report=replace(made.report, problems=problems))
+        monkeypatch.setattr(verdict, "assembled", lambda *_, result=spoilt, **__: result)
+        assert (look_at(cover, PLYWOOD, clover).refusal is None) is (shown != codes)
+
+
+def test_that_covers_are_kept_that_promise_both_ends(
+    request_of_clover: Request, cover: Candidate, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = (0.7, 1.0, 0.8, 0.9, 0.6, 0.5)  # IoU of the whole sheets; trimmed they match alike
+    made = iter([replace(cover, score=replace(cover.score, iou_exact=iou)) for iou in whole])
+    monkeypatch.setattr(PinnedCoverTask, "carry_out", lambda *_: TaskResult(next(made, None), 1))
+    result = result_of(covered_on_pins(Result(request_of_clover, (), 0, 0.0), pool=Pool(0)))
+    assert {one.score.iou_exact for one in result.candidates} == set(sorted(whole)[-PINNED_COVERS:])
+    assert cover.trim is not None
+    less = replace(cover, trim=replace(cover.trim, removed_share=0.5 * cover.given_up))
+    assert promise_on_pins(less) > promise_on_pins(cover)

@@ -10,6 +10,7 @@ import pytest
 from kirigami_studio.foundation.errors import Cancelled, FabricationError
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.outlines.starts import LOOSE, RECTANGLE, start_shape
 from kirigami_studio.pipeline import auto_grid
 from kirigami_studio.pipeline.auto_grid import MOST_SMALL_PIECES, chosen_for, on_smaller_pieces, predicted_for
 from kirigami_studio.pipeline.events import CandidateFound, Finished, Result
@@ -40,6 +41,8 @@ def test_that_smaller_pieces_are_more_and_leave_room_for_pins() -> None:
         assert on_smaller_pieces(request.resolved((10, 10))) is None
     assert on_smaller_pieces(wish("clover").resolved((8, 8))).grid == (10, 10)  # type: ignore[union-attr]
     assert on_smaller_pieces(wish("clover", width_mm=140.0).resolved((6, 6))) is None  # no room for pins
+    disk = on_smaller_pieces(wish("clover", start=start_shape("circle")).resolved((8, 7)))
+    assert disk is not None and disk.grid == (8, 8)  # as wide as high, though others are expected to match better
 
 
 def outcome(request: Request) -> tuple[Result, list[object]]:
@@ -90,3 +93,9 @@ def test_that_grids_that_were_asked_for_stay() -> None:
     assert wants_smaller_pieces(badly)
     assert not wants_smaller_pieces(replace(badly, request=replace(request, grid=(8, 8))))
     assert not wants_smaller_pieces(replace(badly, request=replace(badly.request, budget_seconds=9.0)))
+
+
+def test_that_a_start_is_held_loosely_where_pieces_are_cut_to_it() -> None:
+    disk = start_shape("circle")
+    assert disk.held_loosely() == replace(disk, weight=LOOSE * disk.weight)
+    assert RECTANGLE.held_loosely() is RECTANGLE  # a run for it stays what it is
