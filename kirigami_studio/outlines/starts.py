@@ -104,7 +104,7 @@ class StartShape:
         check(self)
 
     def held_loosely(self) -> StartShape:
-        """The same start for sheets whose pieces are cut to it afterwards; rectangles are met at any weight."""
+        """Lower the weight, for sheets whose pieces are cut to the start; rectangles are met at any weight."""
         return self if self.outline is None else replace(self, weight=LOOSE * self.weight)
 
     @property

@@ -375,9 +375,9 @@ def _tried(request: Request, trials: Trials) -> GridChoice:
 def on_smaller_pieces(request: Request) -> GridChoice | None:
     """Choose the grid of smaller pieces that is expected to match best.
 
-    Of another start, it is the one of its proportions.  For a target that pieces on the request's grid show badly.
-    None where the pins leave no room for smaller ones; they
-    may come nearer than on grids that are chosen at once.
+    For a target that pieces on the request's grid show badly.  Of another start than a rectangle it is the grid of its
+    proportions.  None where the pins leave no room for smaller pieces; they may come nearer than on grids that are
+    chosen at once.
     """
     rows, columns = request.chosen_grid
     finer = [

@@ -666,7 +666,8 @@ class _Work:
 
         def order(place: int) -> tuple[object, ...]:
             cover = replace(covers[place], index=place)
-            return self.request.pinned and -promise_on_pins(cover), *self.ranking.key(cover)
+            promise = promise_on_pins(cover) if self.request.pinned else 0.0
+            return -promise, *self.ranking.key(cover)
 
         best = sorted(covers, key=order)[:most]
         for place in sorted(best):

@@ -217,9 +217,9 @@ def uniform_stiffness(
 
     It serves fits from anywhere: finding it takes as long as a step, or three of a large sheet.  After 5 and 15 steps
     from 18 samples for a heart and a star fits are as good as with one of their own, found anew every eight steps (mean
-    IoU 0.9848 and 0.9895 instead of 0.9815 and 0.9898), and so they are from the uniform sheet; after 15 steps from 18
-    samples of 24 x 24 and 9 of 40 x 40 voids, with that of where they begin: 0.9774 and 0.9844 instead of 0.9776 and
-    0.9837.  It is kept, that of large sheets for the last two.
+    IoU 0.9848 and 0.9895 instead of 0.9815 and 0.9898), and so they are from the uniform sheet.  After 15 steps from 18
+    samples of 24 x 24 and 9 of 40 x 40 voids it is 0.9774 and 0.9844; with that of where each fit begins, 0.9776 and
+    0.9837.  The last ones are kept, two of large sheets.
     """
     kept = _stiffness if grid[0] * grid[1] <= LARGEST_KEPT else _large_stiffness
     return kept(grid, free_rim, free_hinges, symmetry)

@@ -15,7 +15,7 @@ from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.run import fits_from_uniform
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
-from kirigami_studio.studio import assembling
+from kirigami_studio.studio import assembling, looking_ahead
 from kirigami_studio.studio.assembling import Assembled, assembled, kept
 from kirigami_studio.studio.designing import ranked_as_cut, request_for
 
@@ -40,6 +40,9 @@ def test_that_workers_make_the_pieces_of_designs_and_hand_them_over(monkeypatch:
         while not pool.ready:
             time.sleep(0.05)
         together = result_of(ranked_as_cut(result, PLYWOOD, (), never, pool))
+        # A second round, with covers say, asks workers for nothing that is kept.
+        monkeypatch.setattr(looking_ahead.LooksAhead, "__init__", lambda *_: pytest.fail("it was made before"))
+        assert result_of(ranked_as_cut(result, PLYWOOD, (), never, pool)) == together
     assert together == alone and together.losses == alone.losses and together.as_cut == alone.as_cut
     for one, before in made.items():
         pieces = kept(one, PLYWOOD, target)

@@ -277,9 +277,9 @@ def _large_fit_seconds(target: Outline) -> float:
 
 
 def _sheet_fit_seconds(target: Outline, size: int) -> float:
-    """Processor time of a fit as the program makes it, from a uniform sheet of ``size`` x ``size`` voids; no first one.
+    """Processor time of a fit as the program makes it, from the uniform sheet of ``size`` x ``size`` voids.
 
-    What all fits of that grid share is known.
+    It is a second one: what all fits of that grid share is known.
     """
     uniform = Sheet.uniform(size, size)
     pose = polish(uniform, target, steps=0).pose
