@@ -325,6 +325,7 @@ def refitted(
     room_mm: float = 0.0,
     least_gap_mm: float = 0.0,
     span_mm: float = 0.0,
+    start_weight: float = 1.0,
 ) -> Refit:
     """Fit a candidate on the exact geometry from its present sheet, and trim it again if it is trimmed.
 
@@ -353,6 +354,8 @@ def refitted(
         How far apart the pins of a pinned sheet stay; 0 for others.
     span_mm : float
         See :class:`Room`.
+    start_weight : float, > 0
+        How firmly a round start is held, except by covers.
 
     Raises
     ------
@@ -390,6 +393,7 @@ def refitted(
             least_panel=least,
             least_gap=gap,
             second=None if candidate.second is None else candidate.second.target,
+            start_weight=start_weight,
         )
         _stop_if(cancel)
         deployment = deploy(fit.sheet)

@@ -731,6 +731,7 @@ def refitting(
         room_mm=room_mm,
         least_gap_mm=gap_of(settings),
         span_mm=_span_of(settings),
+        start_weight=wanted.start.weight,
     )
     untrimmed = "" if refit.trim_problem is None else str(refit.trim_problem)
     yield Refitted(decoded(refit.candidate), refit.better, untrimmed)

@@ -15,10 +15,12 @@ from kirigami_studio.evaluate.trimming import KEEP, trim
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation.errors import Cancelled, FabricationError, KirigamiError
 from kirigami_studio.lattice.deployment import deploy
+from kirigami_studio.lattice.laying import start_error
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.outlines.starts import start_shape
 from kirigami_studio.pipeline import redesign
 from kirigami_studio.pipeline.fit_again import fit_again
 from kirigami_studio.pipeline.redesign import keep_for_connectors, refitted, rescored, sampled, trimmed
@@ -50,6 +52,17 @@ def candidate(heart: Outline) -> Candidate:
 @pytest.fixture(scope="module")
 def trimmed_candidate(candidate: Candidate, heart: Outline) -> Candidate:
     return trimmed(candidate, heart, KEEP, never).candidate
+
+
+def test_that_a_design_is_fitted_again_by_the_weight_of_its_start(heart: Outline) -> None:
+    sheet = Request(heart, GRID, start=start_shape("circle")).uniform
+    design = Candidate(sheet, evaluate(deploy(sheet), heart), seed=1, index=0)
+    firm, loose = (
+        refitted(design, heart, "accuracy", [], shallow, never, free_rim=True, start_weight=weight).candidate
+        for weight in (1.0, 0.01)
+    )
+    assert start_error(loose.sheet) > 1.05 * start_error(firm.sheet)
+    assert loose.score.iou_exact > firm.score.iou_exact
 
 
 def test_that_a_trim_is_added_beside_the_designs_own_field_and_score(
