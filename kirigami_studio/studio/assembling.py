@@ -21,7 +21,7 @@ from kirigami_studio.fabricate.drive import DriveKind
 from kirigami_studio.fabricate.findings import Problem
 from kirigami_studio.fabricate.machine import Machine, MachineKind
 from kirigami_studio.fabricate.material import Material
-from kirigami_studio.foundation.errors import FabricationError
+from kirigami_studio.foundation.errors import FabricationError, KirigamiError
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.settings.fabrication import (
@@ -130,8 +130,11 @@ def assembled(
 
 
 def kept(candidate: Candidate, settings: FabricationSettings, target: Outline) -> Assembled | None:
-    """The pieces of a design if they were made lately."""
-    return _KEPT.get(_key(candidate, settings, target))
+    """Find the pieces of a design if they were made lately; None by settings that none can be made by."""
+    try:
+        return _KEPT.get(_key(candidate, settings, target))
+    except KirigamiError:
+        return None
 
 
 def keep(candidate: Candidate, settings: FabricationSettings, target: Outline, made: Assembled) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from contextlib import closing
+from dataclasses import replace
 
 import pytest
 
@@ -50,3 +51,9 @@ def test_that_workers_make_the_pieces_of_designs_and_hand_them_over(monkeypatch:
         assert assembled(one, PLYWOOD, target) is pieces
         assert [each.id for each in pieces.assembly.pieces] == [each.id for each in before.assembly.pieces]
     assert not here
+
+    # What can be asked for and not be made is said of each design, and loses none.
+    broken = replace(PLYWOOD, pin_mm=6.0, ear_mm=5.0)
+    refused = result_of(ranked_as_cut(result, broken, (), never, Pool(0)))
+    assert {note.code for note in refused.refusals.values()} == {"settings.ear_within_hole"}
+    assert set(refused.refusals) == set(refused.candidates) == set(candidates)
