@@ -41,7 +41,7 @@ ACCURACY = 1e-4
 UPRIGHT = 1e-3
 #: Weight of a start unless another is asked for.
 USUAL_WEIGHT = 1.0
-#: Share of its weight by which a start is held loosely.
+#: Weight at most of a start that is held loosely.
 LOOSE = 0.01
 #: What :func:`start_shape` reads beside files and library names.
 KINDS = ("auto", "rectangle", "square", "circle", "ellipse", "triangle", "hexagon", "gable", "notch")
@@ -105,7 +105,7 @@ class StartShape:
 
     def held_loosely(self) -> StartShape:
         """Lower the weight, for sheets whose pieces are cut to the start; rectangles are met at any weight."""
-        return self if self.outline is None else replace(self, weight=LOOSE * self.weight)
+        return self if self.outline is None else replace(self, weight=min(self.weight, LOOSE))
 
     @property
     def is_plain(self) -> bool:

@@ -25,8 +25,8 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray
 SINGLE, SINGLE_DAMPING = 600, 1e-5
 #: Share of the mean of the diagonal that the damping adds to each entry.
 FLOOR = 1e-3
-#: The damping of a matrix that rounding has made indefinite grows by these factors.
-GROWN = (1.0, 10.0, 100.0)
+#: Factors of the damping that are tried one after the other, until rounding no longer makes the matrix indefinite.
+DAMPED_MORE = (1.0, 10.0, 100.0)
 #: In single or double precision.
 Matrix = FloatArray | npt.NDArray[np.float32]
 
@@ -81,9 +81,9 @@ class Damped:
         if held.any():
             outline = outline.copy()
             outline[:, held] = 0.0
-        for grown in GROWN:
+        for more in DAMPED_MORE:
             inner = model.inner.copy()
-            added = grown * damping * (diagonal + FLOOR * diagonal.mean())
+            added = more * damping * (diagonal + FLOOR * diagonal.mean())
             inner.ravel()[:: len(inner) + 1] += added.astype(inner.dtype)
             if held.any():
                 inner[held], inner[:, held] = 0.0, 0.0

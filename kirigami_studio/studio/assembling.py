@@ -130,7 +130,10 @@ def assembled(
 
 
 def kept(candidate: Candidate, settings: FabricationSettings, target: Outline) -> Assembled | None:
-    """Find the pieces of a design if they were made lately; None by settings that none can be made by."""
+    """Find the pieces of a design if they were made lately.
+
+    None without any, and by settings that none can be made by.
+    """
     try:
         return _KEPT.get(_key(candidate, settings, target))
     except KirigamiError:

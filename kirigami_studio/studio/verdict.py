@@ -211,6 +211,7 @@ class Verdict:
     match: float | None = None  #: IoU with the target: as cut where that is known, else as designed
     read: bool = False  #: Whether its files were read back
     printed: bool = False  #: Whether it is printed and not cut
+    cover_on_pins: bool = False  #: Whether panels are given up of it, and the others turn on pins
 
     @property
     def level(self) -> Level:
@@ -229,8 +230,12 @@ class Verdict:
 
     @property
     def refusal(self) -> Problem | None:
-        """The problem for which others are ranked before it, if any; lost match is none."""
-        return _refusal(self.problems)
+        """The problem for which others are ranked before it, if any; lost match is none.
+
+        A cover on pins may spoil its flat outline or miss the target, but not both.
+        """
+        refusal = _refusal(self.problems)
+        return _refusal(self.problems, BEARABLE_OF_COVERS) if refusal is not None and self.cover_on_pins else refusal
 
     @property
     def is_estimate(self) -> bool:
@@ -488,10 +493,7 @@ def _look_at_pieces(candidate: Candidate, settings: FabricationSettings, target:
         return CloseLook(Note(error.code, error.fields))
     found = judge_assembled(candidate, made, settings)
     gained = made.report.figures.match - candidate.match
-    refusal = _refusal(found.problems)
-    if candidate.trim is not None and candidate.trim.given_up and refusal is not None:
-        refusal = _refusal(found.problems, BEARABLE_OF_COVERS)
-    return CloseLook(refusal, made.as_cut, gained)
+    return CloseLook(found.refusal, made.as_cut, gained)
 
 
 def refused(error: KirigamiError) -> Verdict:
@@ -575,6 +577,7 @@ def judge_assembled(
         made.as_cut.iou,
         bool(verifications),
         is_printed(settings),
+        candidate.trim is not None and candidate.trim.given_up > 0,
     )
 
 

@@ -123,6 +123,10 @@ def test_that_a_cover_that_shows_neither_end_is_refused(
         spoilt = replace(made, report=replace(made.report, problems=problems))
         monkeypatch.setattr(verdict, "assembled", lambda *_, result=spoilt, **__: result)
         assert (look_at(cover, PLYWOOD, clover).refusal is None) is (shown != codes)
+        # What the cards of the window are ranked by.
+        assert (verdict.judge_assembled(cover, spoilt, PLYWOOD).refusal is None) is (shown != codes)
+        whole = verdict.judge_assembled(replace(cover, trim=None), spoilt, PLYWOOD).refusal
+        assert (whole is None) is ("pinned.flat_outline_spoilt" not in shown)
 
 
 def test_that_covers_are_kept_that_promise_both_ends(

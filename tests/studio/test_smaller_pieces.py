@@ -16,6 +16,7 @@ from kirigami_studio.pipeline.auto_grid import MOST_SMALL_PIECES, chosen_for, on
 from kirigami_studio.pipeline.events import CandidateFound, Finished, Result
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.request import Request
+from kirigami_studio.pipeline.run import run
 from kirigami_studio.settings.design import DesignSettings
 from kirigami_studio.settings.fabrication import FabricationSettings
 from kirigami_studio.studio import designing
@@ -97,5 +98,26 @@ def test_that_grids_that_were_asked_for_stay() -> None:
 
 def test_that_a_start_is_held_loosely_where_pieces_are_cut_to_it() -> None:
     disk = start_shape("circle")
-    assert disk.held_loosely() == replace(disk, weight=LOOSE * disk.weight)
+    assert disk.held_loosely() == replace(disk, weight=LOOSE)
+    assert replace(disk, weight=5e-324).held_loosely().weight == 5e-324  # the least there is
     assert RECTANGLE.held_loosely() is RECTANGLE  # a run for it stays what it is
+
+
+@pytest.mark.torch
+def test_that_the_run_on_smaller_pieces_holds_the_start_loosely_and_keeps_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    request = wish("heart", polish=2, start=start_shape("circle"))
+    held: list[float] = []
+
+    def noted(asked: Request, *more: Any) -> Any:
+        held.append(asked.start.weight)
+        return run(asked, *more)
+
+    monkeypatch.setattr(auto_grid, "_CHOSEN", {})
+    monkeypatch.setattr("kirigami_studio.pipeline.run.run", noted)
+    monkeypatch.setattr(designing, "wants_smaller_pieces", lambda result: True)
+    monkeypatch.setattr(designing, "wants_covers_on_pins", lambda result: False)
+    monkeypatch.setattr(designing, "_worth_of_first", lambda result: float(result.request.chosen_grid[0]))
+    found, events = outcome(request)
+    assert held == [1.0, LOOSE]
+    assert [event.grid for event in events if isinstance(event, GridChosen)][-1] == found.request.grid
+    assert found.request.start == request.start

@@ -7,8 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import BoolArray, FloatArray
+from kirigami_studio.lattice.sheet import Sheet
+from kirigami_studio.outlines.silhouettes import load
+from kirigami_studio.polish.boundary_target import BoundaryTarget
+from kirigami_studio.polish.even_panels import USUAL_WEIGHT, EvenPanels
+from kirigami_studio.polish.levenberg import SAMPLES, polish
 from kirigami_studio.polish.normal_equations import FLOOR, SINGLE, SINGLE_DAMPING, Damped, Quadratic, single_suffices
+from kirigami_studio.polish.objective import FitPhase, Objective
+from kirigami_studio.polish.preferences import FieldPreferenceTerms, Preference
+from kirigami_studio.polish.sensitivity import OutlineModel
 
 VARIABLES, COORDINATES = 30, 12
 
@@ -90,3 +98,36 @@ def test_that_large_matrices_are_of_single_precision_while_they_are_damped() -> 
     assert single_suffices(SINGLE, SINGLE_DAMPING)
     assert not single_suffices(SINGLE - 1, 1.0)
     assert not single_suffices(SINGLE, 0.9 * SINGLE_DAMPING)
+
+
+def test_that_the_quadratic_of_a_large_fit_is_of_single_precision(monkeypatch: pytest.MonkeyPatch) -> None:
+    kinds: list[object] = []
+    made = Damped.of
+
+    def noted(model: Quadratic, damping: float, held: BoolArray) -> Damped:
+        kinds.append(model.inner.dtype)
+        return made(model, damping, held)
+
+    monkeypatch.setattr(Damped, "of", noted)
+    for size in (8, 25):
+        polish(Sheet.uniform(size, size), load("heart"), steps=1, free_rim=True, even=USUAL_WEIGHT)
+    assert kinds == [np.float64, np.float32]
+
+
+def test_that_both_precisions_make_the_same_quadratic() -> None:
+    objective, z = (
+        Objective(
+            OutlineModel(8, 8, 0.0),
+            BoundaryTarget.of(load("heart"), SAMPLES),
+            FieldPreferenceTerms(Preference(), np.zeros(64), 8, 8),
+            FitPhase(1, even=USUAL_WEIGHT),
+            even=EvenPanels.of(Sheet.uniform(8, 8)),
+        ),
+        0.2 * np.sin(np.arange(64.0)),
+    )
+    look = objective.look(np.concatenate([z, [-1.5, 0.1, 0.0, 0.0]]))
+    slopes = objective.slopes(look)
+    double, single = (objective.quadratic(look, slopes, single=one) for one in (False, True))
+    assert single.inner.dtype == np.float32
+    np.testing.assert_allclose(single.inner, double.inner, rtol=1e-4, atol=1e-6 * np.abs(double.inner).max())
+    np.testing.assert_array_equal(single.gradient, double.gradient)
