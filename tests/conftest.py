@@ -54,12 +54,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out what a budget has no room for, once other options have chosen."""
+    """Leave out what a budget has no room for, once other options have chosen; rules of the whole code stay."""
     budget = config.getoption("budget")
     if budget is None:
         return
     durations = read_durations(config.getoption("durations_file"))
-    left_out = beyond_budget({item.nodeid: shared_fixtures(item) for item in items}, durations, budget)
+    rules = [item.nodeid for item in items if item.get_closest_marker("rule")]
+    left_out = beyond_budget({item.nodeid: shared_fixtures(item) for item in items}, durations, budget, rules)
     config.hook.pytest_deselected(items=[item for item in items if item.nodeid in left_out])
     items[:] = [item for item in items if item.nodeid not in left_out]
 

@@ -31,7 +31,9 @@ def function_of(test: str) -> str:
     return test.partition("[")[0]
 
 
-def beyond_budget(tests: Mapping[str, Collection[str]], durations: dict[str, float], budget: float) -> set[str]:
+def beyond_budget(
+    tests: Mapping[str, Collection[str]], durations: dict[str, float], budget: float, always: Collection[str] = ()
+) -> set[str]:
     """Choose tests to leave out so that the others take ``budget`` processor seconds.
 
     The dearest cases go first.  The cheapest case of each function, of most of them the only one, goes only when no
@@ -44,6 +46,7 @@ def beyond_budget(tests: Mapping[str, Collection[str]], durations: dict[str, flo
     durations : dict
         Node id or shared fixture -> processor seconds.
     budget : float, processor seconds
+    always : collection of str, node ids that stay whatever they take
     """
     users = Counter(fixture for fixtures in tests.values() for fixture in fixtures)
     alone = {test: durations.get(test, UNLISTED) for test in tests}
@@ -62,7 +65,7 @@ def beyond_budget(tests: Mapping[str, Collection[str]], durations: dict[str, flo
 
     excess = sum(alone.values()) + sum(durations.get(fixture, 0.0) for fixture in users) - budget
     left_out: set[str] = set()
-    for test in sorted(seconds, key=order):
+    for test in sorted(seconds.keys() - set(always), key=order):
         if excess <= 0.0:
             break
         left_out.add(test)

@@ -14,6 +14,8 @@ import pytest
 from kirigami_studio.cli.parser import all_commands, build_parser
 from tests.catalogues import catalogue, forms
 
+pytestmark = pytest.mark.rule
+
 #: Folders with documents, beside those in the root.
 FOLDERS = ("docs", "resources", "tests", "packaging", "kirigami_studio")
 #: ``[text](place)`` and ``![text](place)``; the place without its anchor and title.

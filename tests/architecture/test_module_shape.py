@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.rule
+
 #: Below so many lines a module with a single importer belongs into it, unless there is a reason.
 FRAGMENT_LINES = 60
 #: Small modules with one importer (or none) that stand alone all the same, and why.

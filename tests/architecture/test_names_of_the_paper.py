@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.rule
+
 ROW = re.compile(r"^\| (?P<name>[^|]+) \| [^|]+ \| (?P<code>[^|]*`[^|]+) \|$", re.MULTILINE)
 PLACE = re.compile(r"`(?P<module>[\w/]+\.py): (?P<definition>\w+)`")
 #: Words by which a row's place says what it is, where its name is none.

@@ -24,6 +24,8 @@ from kirigami_studio.project.edits import SettingsChange
 from kirigami_studio.settings.design import DesignChange, DesignChoices, DesignSettings
 from kirigami_studio.settings.fabrication import FabricationChange, FabricationSettings, OptionsChange
 
+pytestmark = pytest.mark.rule
+
 
 @dataclass(frozen=True)
 class Planted:

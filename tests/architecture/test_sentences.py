@@ -15,6 +15,8 @@ from kirigami_studio.foundation import errors
 from kirigami_studio.foundation.errors import ExportError, KirigamiError
 from kirigami_studio.foundation.sentences import SENTENCES, sentence
 
+pytestmark = pytest.mark.rule
+
 CODE = re.compile(r"[a-z][a-z0-9_]*(\.[a-z0-9_]+)+")
 #: Told in one clause, which a longer sentence takes in.
 CLAUSES = re.compile(r"[.!?:)…}]$|\{\w+[^}]*\}$")

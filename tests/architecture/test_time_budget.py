@@ -90,6 +90,12 @@ def test_that_the_dearest_cases_go_first_and_one_of_each_function_stays() -> Non
     assert beyond_budget(without_fixtures(*SECONDS), SECONDS, 5.5) == {"a.py::test[1]", "a.py::test[3]"}
 
 
+def test_that_rules_stay_whatever_they_take() -> None:
+    rules = ["a.py::test[1]", "b.py::third"]
+    assert beyond_budget(without_fixtures(*SECONDS), SECONDS, 13.0, rules) == {"a.py::other"}
+    assert beyond_budget(without_fixtures(*SECONDS), SECONDS, 0.0, rules) == SECONDS.keys() - set(rules)
+
+
 def test_that_whole_functions_go_once_further_cases_take_less_than_a_tenth_of_their_time() -> None:
     assert beyond_budget(without_fixtures(*SECONDS), SECONDS, 5.0) == {"a.py::test[1]", "a.py::test[3]", "a.py::other"}
     cheap = {f"a.py::cases[{number}]": 0.3 for number in range(10)}

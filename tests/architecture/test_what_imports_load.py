@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.rule
+
 PACKAGE = Path(__file__).resolve().parents[2] / "kirigami_studio"
 KNOWS_TORCH = {"kirigami_studio.lattice.batched", "kirigami_studio.lattice.paired_sweep"}
 CORE = ("foundation", "lattice", "outlines", "evaluate", "fabricate", "mechanics", "polish", "export", "project")

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.rule
+
 #: A docstring's first line is a noun phrase or an imperative of at most so many characters.
 LONGEST = 90
 #: Begins with a relative clause, or with a participle of what is said.

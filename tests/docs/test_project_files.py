@@ -17,6 +17,8 @@ from kirigami_studio.project.migrations import CURRENT_VERSION
 from kirigami_studio.project.picture_record import LARGEST_PICTURE
 from kirigami_studio.project.store import LARGEST_CONTENT, LARGEST_FILE, MANIFEST, MOST_MEMBERS, load, pack
 
+pytestmark = pytest.mark.rule
+
 #: Tables of texts by the user's and the run's own words.
 FREE = {"provenance", "runs", "made_with"}
 

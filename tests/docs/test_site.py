@@ -17,6 +17,8 @@ import kirigami_studio
 from kirigami_studio.cli.parser import all_commands
 from kirigami_studio.foundation.resources import resource
 
+pytestmark = pytest.mark.rule
+
 pytest.importorskip("mkdocs")
 
 REPOSITORY = Path(__file__).resolve().parents[2]

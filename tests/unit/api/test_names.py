@@ -21,6 +21,8 @@ import pytest
 import kirigami_studio as ks
 from kirigami_studio.api.choices import CUTS, SEARCH, CutKeywords, SearchKeywords, keywords_of
 
+pytestmark = pytest.mark.rule
+
 #: What the API gives on which no promise rests: they come with their base classes.
 INHERITED = {"add_note", "args", "with_traceback"}
 LOADED = """
