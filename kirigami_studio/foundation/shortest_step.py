@@ -8,8 +8,8 @@ each other they give way: the step has the least
 
 The dual has one multiplier >= 0 for each condition and is solved as non-negative least squares.  Only conditions that
 the last step violates enter it, and those that no longer push leave it (Nocedal and Wright, Numerical Optimization,
-2nd ed., ch. 16).  Where more conditions than variables enter, the sum above is the smaller problem: it is quadratic in
-pieces, and Newton's method with an exact search along each direction ends at its minimum.
+2nd ed., ch. 16).  Where more conditions than variables enter, an interior-point method, whose matrices have the size of
+the step, ends at the same multipliers (same book, sec. 16.6).
 """
 
 from __future__ import annotations
@@ -24,8 +24,12 @@ from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 
 #: Rounds at most in which conditions enter and leave: two or three do.
 ROUNDS = 30
-#: Newton steps at most, of which some ten do, and the share of the whole step below which one changes nothing.
-NEWTON_STEPS, SETTLED = 100, 1e-12
+#: Interior steps at most, of which ten to thirty do.  They end at a gap of this share of the step's squared length, and
+#: within this share of what is asked.
+INTERIOR_STEPS, SETTLED, MET = 100, 1e-15, 1e-9
+#: Multipliers begin so many times as large as those of one condition alone, and each step goes this far to where one
+#: would be 0: conditions that contradict each other push hard.
+PUSHED, KEPT_POSITIVE = 100.0, 0.995
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +62,7 @@ class Conditions:
 
     def binding(self) -> tuple[Conditions, FloatArray]:
         """Those of these that the shortest step under them is pushed by, and their multipliers (B,)."""
-        found = self._by_newton() if self.rows.shape[0] > self.rows.shape[1] else self._by_dual()
+        found = self._by_interior_point() if self.rows.shape[0] > self.rows.shape[1] else self._by_dual()
         return self.chosen(found > 0.0), found[found > 0.0]
 
     def _by_dual(self) -> FloatArray:
@@ -73,47 +77,53 @@ class Conditions:
         found: FloatArray = nnls(lower.T, right, maxiter=10 * self.asked.size + 100)[0]
         return found
 
-    def _by_newton(self) -> FloatArray:
-        """Multipliers (C,) of the step with the least sum."""
-        variables = self.rows.shape[1]
-        step, curvature = np.zeros(variables), np.eye(variables)
-        counted = np.zeros(self.asked.size, dtype=np.bool_)
-        for _ in range(NEWTON_STEPS):
-            lacking = self.asked - self.rows @ step
-            there = lacking > 0.0
-            # From step to step few conditions begin to push, or cease to.
-            for changed, sign in ((there & ~counted, 1.0), (counted & ~there, -1.0)):
-                rows = self.rows[changed]
-                curvature += rows.T @ (rows * (sign / self.give[changed, None]))
-            counted = there
-            slope = step - self.rows.T @ (np.maximum(lacking, 0.0) / self.give)
-            way = -cho_solve(cho_factor(curvature, check_finite=False), slope, check_finite=False)
-            moved = self._along(step, way, lacking) * way
-            step = step + moved
-            if float(np.abs(moved).max()) <= SETTLED * (1.0 + float(np.abs(step).max())):
+    def _by_interior_point(self) -> FloatArray:
+        """Multipliers (C,); 0 of those that do not push."""
+        stiffness, largest = np.sum(self.rows**2, axis=1) + self.give, float(np.abs(self.asked).max())
+        pushed = PUSHED * largest / float(stiffness.mean())
+        now = _Interior(self, np.full(self.give.size, pushed), np.full(self.give.size, largest))
+        for _ in range(INTERIOR_STEPS):
+            if now.gap <= SETTLED * float(now.step @ now.step) and np.abs(now.missed).max() <= MET * largest:
                 break
-        found: FloatArray = np.maximum(self.asked - self.rows @ step, 0.0) / self.give
-        return found
+            now = now.nearer()
+        return np.where(now.multipliers * stiffness > now.spare, now.multipliers, 0.0)
 
-    def _along(self, step: FloatArray, way: FloatArray, lacking: FloatArray) -> float:
-        """Share of a way to the least sum, whose slope along the way grows in straight pieces."""
-        gains = self.rows @ way
-        stiff, pushing = gains / self.give, (lacking > 0.0) | ((lacking == 0.0) & (gains < 0.0))
-        # Where each condition ceases to push, or begins to.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            turns = lacking / gains
-        order = np.flatnonzero((turns > 0.0) & (turns < 1.0) & (pushing == (gains > 0.0)))
-        order = order[np.argsort(turns[order], kind="stable")]
-        sign = np.where(gains[order] > 0.0, -1.0, 1.0)
-        before = float(way @ step - stiff[pushing] @ lacking[pushing])
-        growth = float(way @ way + stiff[pushing] @ gains[pushing])
-        starts = before - np.cumsum(np.append(0.0, sign * stiff[order] * lacking[order]))
-        growths = growth + np.cumsum(np.append(0.0, sign * stiff[order] * gains[order]))
-        ends = np.append(turns[order], 1.0)
-        piece = int(np.argmax(starts + ends * growths >= 0.0))
-        if starts[piece] + ends[piece] * growths[piece] < 0.0:
-            return 1.0
-        return float(min(-starts[piece] / growths[piece], ends[piece]))
+
+class _Interior:
+    """Of each condition a multiplier and what is to spare, both positive.
+
+    To spare is rows u + give multipliers - asked: 0 where a condition pushes, while the multiplier is 0 where not.
+    """
+
+    def __init__(self, given: Conditions, multipliers: FloatArray, spare: FloatArray) -> None:
+        self._given, self.multipliers, self.spare = given, multipliers, spare
+        self.step = given.rows.T @ multipliers  #: (V,)
+        self.missed = given.rows @ self.step + given.give * multipliers - given.asked - spare  #: (C,)
+        self.gap = float(multipliers @ spare)  #: cost of this step over that of the best one, once nothing is missed
+        self._yielding = given.give + spare / multipliers
+        self._root: tuple[FloatArray, bool] | None = None
+
+    def nearer(self) -> _Interior:
+        """The next point, by Mehrotra's predictor and corrector."""
+        more, wider, share = self._towards(np.zeros(self.spare.size))
+        left = float((self.multipliers + share * more) @ (self.spare + share * wider)) / self.gap
+        more, wider, share = self._towards(left**3 * self.gap / self.spare.size - more * wider)
+        share *= KEPT_POSITIVE
+        return _Interior(self._given, self.multipliers + share * more, self.spare + share * wider)
+
+    def _towards(self, products: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        """Changes of both (C,) to these products, and the share of them that keeps both positive."""
+        rows, multipliers, spare = self._given.rows, self.multipliers, self.spare
+        if self._root is None:
+            scaled = rows / np.sqrt(self._yielding)[:, None]
+            curvature = scaled.T @ scaled
+            curvature[np.diag_indices_from(curvature)] += 1.0
+            self._root = cho_factor(curvature, overwrite_a=True, check_finite=False)
+        wanted = (products / multipliers - spare - self.missed) / self._yielding
+        more = wanted - rows @ cho_solve(self._root, rows.T @ wanted, check_finite=False) / self._yielding
+        wider = (products - spare * more) / multipliers - spare
+        least = min(float((more / multipliers).min()), float((wider / spare).min()))
+        return more, wider, 1.0 / max(1.0, -least)
 
 
 def shortest_step(

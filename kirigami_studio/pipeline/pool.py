@@ -208,8 +208,11 @@ class Pool:
         self.start(len(waiting))
         begun, heard_at = False, time.monotonic()
         while self.workers and (self._under_way(batch) or (waiting and not self._winding_down)):
+            # Where none is ready yet, work waits for those that start, while this process does other things.
+            some_ready = any(worker.ready for worker in self.workers)
             for worker in self.workers:
-                if waiting and not self._winding_down and worker.ready and worker.assignment is None:
+                may_work = worker.assignment is None and (worker.ready or not some_ready)
+                if waiting and not self._winding_down and may_work:
                     number, task = waiting.popleft()
                     worker.assignment = Assignment(batch, number, request, task)
                     worker.send(worker.assignment)  # a dead one is noticed by its listener

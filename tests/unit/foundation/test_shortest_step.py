@@ -48,6 +48,22 @@ def test_that_a_step_is_balanced_between_its_length_and_the_conditions_that_push
     assert multipliers.min() > 0.0 and pushing.number.size > 5
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_that_conditions_that_can_all_be_met_are_however_many_there_are(seed: int) -> None:
+    """Their multipliers are large, and those of the cost alone small: once such steps went astray."""
+    rng = np.random.default_rng(seed)
+    rows = rng.normal(size=(330, 120)) * np.geomspace(1.0, 30.0, 330)[:, None]
+    near = rng.normal(size=120)
+    spare = np.where(np.arange(330) % 3 == 0, 0.0, rng.exponential(20.0, size=330))
+    asked = rows @ near - spare
+    step, pushing, multipliers = solved(rows, asked, 1e-9)
+    assert (asked - rows @ step).max() < 1e-6
+    assert step == pytest.approx(rows[pushing.number].T @ multipliers, rel=1e-9)
+    least = nnls(rows.T @ np.diag(1.0 / np.linalg.norm(rows, axis=1)), step)
+    assert least[1] < 1e-6 * np.linalg.norm(step) and np.linalg.norm(step) <= np.linalg.norm(near)
+    assert multipliers @ np.abs(asked - rows @ step)[pushing.number] < 1e-6
+
+
 def test_that_met_conditions_ask_for_no_step() -> None:
     step, pushing, multipliers = solved(np.eye(3), np.array([-1.0, 0.0, -0.5]))
     assert step.tolist() == [0.0, 0.0, 0.0] and pushing.number.size == multipliers.size == 0

@@ -127,6 +127,21 @@ def test_that_workers_give_bit_by_bit_the_answers_of_one_process(
     assert any(answer.candidate is not None for answer in expected.values())
 
 
+def test_that_work_waits_for_workers_that_start(
+    request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult]
+) -> None:
+    """The process that starts them is busy with the generator until long after they have."""
+    starting = Pool(2)
+    try:
+        reports = answers(starting, request_for_heart, tasks, watch())
+        assert next(reports) is None
+        assert not starting.workers[0].ready
+        assert all(worker.assignment is not None for worker in starting.workers)
+        assert dict(report for report in reports if report is not None) == expected
+    finally:
+        starting.close()
+
+
 @pytest.mark.parametrize("survivors", [1, 0])
 def test_that_the_work_of_killed_workers_is_done_again(
     pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult], survivors: int
