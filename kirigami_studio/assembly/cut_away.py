@@ -75,7 +75,13 @@ def pins_in_holes(deployment: Deployment, panels: PanelTable, phi: float, shown:
 
 
 def without_hardly_shown(
-    deployment: Deployment, panels: PanelTable, phi: float, shown: Polygon, cell_mm: float, spare: float
+    deployment: Deployment,
+    panels: PanelTable,
+    phi: float,
+    shown: Polygon,
+    cell_mm: float,
+    spare: float,
+    stay: IntArray,
 ) -> PanelTable:
     """Leave out panels that show next to nothing of the target.
 
@@ -93,13 +99,15 @@ def without_hardly_shown(
     cell_mm : float
     spare : float, mm2
         How much of the flat sheet may go.
+    stay : (S,) int
+        Numbers of panels that stay in any case.
     """
     flat, placed = (polygons(as_plane(deployment.nodes(at))[panels.corners] * cell_mm) for at in (math.pi, phi))
     area = shapely.area(flat)
     share = shapely.area(shapely.intersection(placed, Polygon(shown.exterior))) / area
     stays = np.ones(len(area), dtype=np.bool_)
     for index in np.argsort(share, kind="stable"):
-        if share[index] > HARDLY_SHOWN or area[index] > spare:
+        if share[index] > HARDLY_SHOWN or area[index] > spare or panels.index[index] in stay:
             continue
         stays[index] = False
         if freedom(LayerMotion.of(deployment, cell_mm, phi, panels=_some(panels, stays))) == 1:

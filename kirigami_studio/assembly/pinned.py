@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,9 +18,10 @@ from kirigami_studio.assembly.pieces import Assembly, Hinge, Piece, RoundHole
 from kirigami_studio.assembly.rim_pieces import EndState, extend_to, roomiest_place, round_off, trim_to
 from kirigami_studio.assembly.shaping import Shaping, less
 from kirigami_studio.evaluate.boundary import as_plane, as_points
+from kirigami_studio.evaluate.kept_panels import PanelTable
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
-from kirigami_studio.foundation.arrays import FloatArray
+from kirigami_studio.foundation.arrays import FloatArray, IntArray
 from kirigami_studio.foundation.errors import FabricationError, UsageError
 from kirigami_studio.foundation.threads import one_blas_thread
 from kirigami_studio.lattice.deployment import Deployment
@@ -33,7 +35,9 @@ DROPPED, FILLED = 1.67, 0.3
 MOST_LOST, MOST_BEYOND = 0.6, 0.9
 #: Pieces that match the target by less are cut further where the flat outline has more to spare than was thought: so
 #: often at most, while that is this share of what it could spare at first, and gains so much match.
-WELL_SHOWN, MORE_SPENT, LEAST_LEFT, WORTHWHILE = 0.98, 3, 0.15, 0.002
+WELL_SHOWN, MORE_SPENT, LEAST_LEFT, WORTHWHILE = 0.98, 6, 0.15, 0.002
+#: Panels are left out at most so many times: those next to pins without wall or neck stay then.
+MOST_DROPS = 3
 #: Width of a character of a label, in its heights.
 CHARACTER = 0.7
 
@@ -119,17 +123,18 @@ def pinned(
     with one_blas_thread(), np.errstate(divide="ignore", invalid="ignore"):
         unwanted = pins_in_holes(deployment, panels, phi, shown, cell_mm)
         needless = [] if options.in_one_plane else _nodes_outside(deployment, phi, cell_mm, Polygon(shown.exterior))
-        fewer = panels
-        if drop_hardly_shown and not options.in_one_plane and options.weight >= 0.5:
-            fewer = without_hardly_shown(deployment, panels, phi, shown, cell_mm, DROPPED * spare)
-        shaping = Shaping.of(deployment, cell_mm, phi, options, fewer, unwanted, needless)
-        if fewer is not panels and shaping.faults:
-            whole = Shaping.of(deployment, cell_mm, phi, options, panels, unwanted, needless)
-            shaping = min(shaping, whole, key=lambda one: one.faults)
-            fewer = fewer if shaping is not whole else panels
-        dropped = panels.corners[~np.isin(panels.index, fewer.index)]
-        gone = float(np.sum(shapely.area(polygons(as_plane(deployment.nodes(math.pi))[dropped] * cell_mm))))
-        panels = fewer
+
+        def notched(some: PanelTable) -> Shaping:
+            return Shaping.of(deployment, cell_mm, phi, options, some, unwanted, needless)
+
+        def fewer(stay: IntArray) -> PanelTable:
+            return without_hardly_shown(deployment, panels, phi, shown, cell_mm, DROPPED * spare, stay)
+
+        dropping = drop_hardly_shown and not options.in_one_plane and options.weight >= 0.5
+        some, shaping = _notched(panels, fewer, notched) if dropping else (panels, notched(panels))
+        left_out = panels.corners[~np.isin(panels.index, some.index)]
+        gone = float(np.sum(shapely.area(polygons(as_plane(deployment.nodes(math.pi))[left_out] * cell_mm))))
+        panels = some
         if only_whole and shaping.broken:
             first = piece_names(shaping.motion)[min(shaping.broken)]
             raise FabricationError("pinned.falls_apart", piece=first, count=len(shaping.broken))
@@ -159,6 +164,35 @@ def pinned(
         (float(at.real), float(at.imag)),
         -(-int(np.count_nonzero(tight)) // alike),
     )
+
+
+def _notched(
+    panels: PanelTable, fewer: Callable[[IntArray], PanelTable], notched: Callable[[PanelTable], Shaping]
+) -> tuple[PanelTable, Shaping]:
+    """Cut the notches of panels without those that can go.
+
+    Where pins have no wall or neck without them, panels next to these stay; all do where that does not help.
+
+    Parameters
+    ----------
+    panels : PanelTable
+    fewer : function
+        Takes the numbers of those that stay in any case.
+    notched : function
+    """
+    stay = panels.index[:0]
+    for _ in range(MOST_DROPS):
+        left = fewer(stay)
+        shaping = notched(left)
+        near = panels.corners[np.isin(panels.corners, list(shaping.weak | shaping.cutting)).any(axis=1)]
+        beside = np.isin(panels.corners, near).any(axis=1) & ~np.isin(panels.index, left.index)
+        if not beside.any():
+            break
+        stay = np.append(stay, panels.index[beside])
+    if left is panels or not shaping.faults:
+        return left, shaping
+    whole = notched(panels)
+    return (left, shaping) if shaping.faults <= whole.faults else (panels, whole)
 
 
 def _with_rims(notched: Shaping, opened: EndState, closed: EndState, spare: float, gone: float) -> Shaping:

@@ -6,7 +6,8 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -18,10 +19,11 @@ from kirigami_studio.assembly.checks import PinnedReport, check_pinned, neck_mm,
 from kirigami_studio.assembly.motion import LayerMotion, freedom
 from kirigami_studio.assembly.options import PinOptions
 from kirigami_studio.assembly.pieces import Piece, RoundHole
-from kirigami_studio.assembly.pinned import PinnedPlan, pinned
+from kirigami_studio.assembly.pinned import PinnedPlan, _notched, pinned
 from kirigami_studio.assembly.rim_pieces import iou, shortest_links
 from kirigami_studio.assembly.shaping import Shaping, less
 from kirigami_studio.evaluate.alignment import align
+from kirigami_studio.evaluate.kept_panels import PanelTable, all_panels
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.similarity import Similarity
 from kirigami_studio.foundation.arrays import IntArray
@@ -421,6 +423,29 @@ def test_that_panels_the_target_shows_nothing_of_go_where_the_motion_does_not_ne
     fewer, every = check_pinned(plan, 9), check_pinned(whole, 2)
     assert fewer.figures.match > every.figures.match + 0.04
     assert fewer.figures.flat_match > 0.9 and not codes(fewer)
+
+
+@pytest.mark.parametrize(("spoilt", "left", "tries"), [({0}, [24], [[], [0]]), ({12}, [], [[], [0, 24]])])
+def test_that_only_panels_stay_without_which_pins_lose_their_wall(
+    spoilt: set[int], left: list[int], tries: list[list[int]]
+) -> None:
+    """Corners of a sheet of 5 x 5 panels may go; without the first, or without any, a pin beside is spoilt."""
+    panels, asked = all_panels(4, 4), []
+
+    def fewer(stay: IntArray) -> PanelTable:
+        asked.append(sorted(stay.tolist()))
+        return panels if {0, 24} <= set(stay.tolist()) else panels.at(
+            np.setdiff1d(np.arange(25), np.setdiff1d([0, 24], stay)), panels.hinged
+        )  # fmt: skip
+
+    def notched(some: PanelTable) -> Shaping:
+        gone = not (set(some.index.tolist()) >= {0, 24}) if 12 in spoilt else 0 not in some.index
+        weak = set(panels.corners[[1, 23] if 12 in spoilt else [1]].ravel().tolist()) if gone else set()
+        return cast(Shaping, SimpleNamespace(weak=weak, cutting=set(), faults=len(weak)))
+
+    found, shaping = _notched(panels, fewer, notched)
+    assert shaping.faults == 0 and asked == tries
+    assert np.setdiff1d(np.arange(25), found.index).tolist() == left
 
 
 def _pins_of(shaping: Shaping) -> IntArray:
