@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,6 +19,7 @@ from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.evaluate.posed_design import PosedDesign
 from kirigami_studio.evaluate.second_target import SecondTarget
 from kirigami_studio.export.bed_files import KINDS as BED_KINDS
+from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.picture import write_parts_png, write_png
 from kirigami_studio.export.svg import write_layout_svg, write_parts_svg
 from kirigami_studio.fabricate.findings import Note
@@ -97,6 +99,11 @@ FILES = {
     "preview": "preview.png",
     "candidates": "candidates.json",
 }
+#: Pictures among them, and who draws them.
+PICTURES: tuple[tuple[Callable[[ExportJob, Path], object], str], ...] = (
+    (write_png, "preview"),
+    (write_layout_svg, "layout"),
+)
 
 
 def design(arguments: argparse.Namespace) -> int:
@@ -571,9 +578,27 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
         made = None if request.is_pinned else planned(request)
     except FabricationError as error:
         refusal = str(error)
-    _write_pictures(request, made, paths)
-    if refusal:
-        raise FabricationError("design.not_cut", project=paths["project"], reason=refusal)
+    try:
+        job = picture_job(request) if made is None else export_job(request, made)
+    except (FabricationError, UsageError):  # panels are shown; writing the pieces says why there are none
+        job = export_job(request, None)
+    # Pillow draws without the interpreter's lock.
+    with ThreadPoolExecutor(1) as beside:
+        drawn = [beside.submit(write, job, paths[role]) for write, role in PICTURES]
+        try:
+            if refusal:
+                raise FabricationError("design.not_cut", project=paths["project"], reason=refusal)
+            return _write_cuts(design, made, folder, paths)
+        finally:
+            for one in drawn:
+                one.result()
+
+
+def _write_cuts(
+    design: DesignOutcome, made: Planned | None, folder: Path, paths: dict[str, Path]
+) -> tuple[DesignOutcome, dict[str, str]]:
+    """Write the cut files, whose paths are added."""
+    request = design.request
     if made is None or made.layers is not None:
         paths["cut"] = folder / ("print" if is_printed(request.settings) else "cut")
         output = Output(paths["cut"], "cut")
@@ -595,15 +620,6 @@ def write_files(design: DesignOutcome, folder: Path) -> tuple[DesignOutcome, dic
         verdicts.append(found.verdict)
     worst = max(verdicts, key=lambda verdict: RANK[verdict.level])
     return replace(design, verdict=worst), {role: str(path) for role, path in paths.items()}
-
-
-def _write_pictures(request: CutRequest, made: Planned | None, paths: Mapping[str, Path]) -> None:
-    try:
-        job = picture_job(request) if made is None else export_job(request, made)
-    except (FabricationError, UsageError):  # panels are shown; writing the pieces says why there are none
-        job = export_job(request, None)
-    write_layout_svg(job, paths["layout"])
-    write_png(job, paths["preview"])
 
 
 def _folder_name(name: str, used: set[str]) -> str:
