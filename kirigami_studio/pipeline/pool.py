@@ -36,6 +36,9 @@ LARGEST_POOL = 8
 #: Libraries that would start a thread for every core inside each worker.
 THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
+#: Bytes that every pipe takes before somebody reads it: writing more to a worker that starts would wait for it.
+PIPE_HOLDS = 4096 if sys.platform == "win32" else 16384
+
 #: Seconds that a worker gets to end by itself.
 PATIENCE = 1.0
 
@@ -211,11 +214,13 @@ class Pool:
             # Where none is ready yet, work waits for those that start, while this process does other things.
             some_ready = any(worker.ready for worker in self.workers)
             for worker in self.workers:
-                may_work = worker.assignment is None and (worker.ready or not some_ready)
-                if waiting and not self._winding_down and may_work:
-                    number, task = waiting.popleft()
-                    worker.assignment = Assignment(batch, number, request, task)
-                    worker.send(worker.assignment)  # a dead one is noticed by its listener
+                if not waiting or self._winding_down or worker.assignment is not None:
+                    continue
+                following = Assignment(batch, waiting[0][0], request, waiting[0][1])
+                if worker.ready or (not some_ready and len(pickle.dumps(following)) <= PIPE_HOLDS):
+                    waiting.popleft()
+                    worker.assignment = following
+                    worker.send(following)  # a dead one is noticed by its listener
             if not begun:
                 begun = True
                 yield None

@@ -142,6 +142,20 @@ def test_that_work_waits_for_workers_that_start(
         starting.close()
 
 
+def test_that_nobody_waits_for_a_worker_that_starts_to_read(
+    request_for_heart: Request, tasks: list[Task], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kirigami_studio.pipeline.pool.PIPE_HOLDS", 1)
+    starting = Pool(2)
+    try:
+        reports = answers(starting, request_for_heart, tasks, watch())
+        assert next(reports) is None
+        assert all(worker.assignment is None for worker in starting.workers)
+        assert len([report for report in reports if report is not None]) == COUNT
+    finally:
+        starting.close()
+
+
 @pytest.mark.parametrize("survivors", [1, 0])
 def test_that_the_work_of_killed_workers_is_done_again(
     pool: Pool, request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult], survivors: int
