@@ -73,12 +73,10 @@ def write_png(job: ExportJob, path: str | Path, longest: int = LONGEST_SIDE) -> 
     ExportError
         The place cannot be written, or the file did not read back.
     """
-    write_image(preview(job, longest), Path(path), origin_facts(job.provenance), optimize=True)
+    write_image(preview(job, longest), Path(path), origin_facts(job.provenance))
 
 
-def write_image(
-    image: Image.Image, path: Path, facts: Mapping[str, str], dpi: float | None = None, optimize: bool = False
-) -> None:
+def write_image(image: Image.Image, path: Path, facts: Mapping[str, str], dpi: float | None = None) -> None:
     """Write a bitmap as PNG and read it back.
 
     Parameters
@@ -87,8 +85,6 @@ def write_image(
         Written as text chunks.
     dpi : float, optional
         Resolution that the file tells; none without one.
-    optimize : bool
-        Whether time is taken for a smaller file.
 
     Raises
     ------
@@ -97,7 +93,7 @@ def write_image(
     """
     stream = BytesIO()
     resolution = {} if dpi is None else {"dpi": (dpi, dpi)}
-    image.save(stream, format="PNG", optimize=optimize, pnginfo=text_chunks(facts), **resolution)
+    image.save(stream, format="PNG", pnginfo=text_chunks(facts), **resolution)
 
     def verify(written: Path) -> None:
         with Image.open(written) as read:
@@ -237,7 +233,7 @@ def write_parts_png(parts: Sequence[PlacedLayout], path: str | Path, longest: in
     ways = [part.share_left(part.job.shown_phi) for part in parts]
     apart = spread(parts) if any(ways) else parts
     image = draw_parts(apart, ways, parts_frame(apart, [ways], longest))
-    write_image(image, Path(path), origin_facts(parts[0].job.provenance), optimize=True)
+    write_image(image, Path(path), origin_facts(parts[0].job.provenance))
 
 
 def parts_frame(parts: Sequence[PlacedLayout], ways: Iterable[Sequence[float]], longest: int) -> PictureFrame:
