@@ -131,7 +131,7 @@ def pinned(
             return without_hardly_shown(deployment, panels, phi, shown, cell_mm, DROPPED * spare, stay)
 
         dropping = drop_hardly_shown and not options.in_one_plane and options.weight >= 0.5
-        some, shaping = _notched(panels, fewer, notched) if dropping else (panels, notched(panels))
+        some, shaping = _fewest_panels(panels, fewer, notched) if dropping else (panels, notched(panels))
         left_out = panels.corners[~np.isin(panels.index, some.index)]
         gone = float(np.sum(shapely.area(polygons(as_plane(deployment.nodes(math.pi))[left_out] * cell_mm))))
         panels = some
@@ -166,10 +166,10 @@ def pinned(
     )
 
 
-def _notched(
+def _fewest_panels(
     panels: PanelTable, fewer: Callable[[IntArray], PanelTable], notched: Callable[[PanelTable], Shaping]
 ) -> tuple[PanelTable, Shaping]:
-    """Cut the notches of panels without those that can go.
+    """Leave out panels that can go, and cut the notches of the others.
 
     Where pins have no wall or neck without them, panels next to these stay; all do where that does not help.
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
@@ -81,7 +82,7 @@ class Conditions:
         """Multipliers (C,); 0 of those that do not push."""
         stiffness, largest = np.sum(self.rows**2, axis=1) + self.give, float(np.abs(self.asked).max())
         pushed = PUSHED * largest / float(stiffness.mean())
-        now = _Interior(self, np.full(self.give.size, pushed), np.full(self.give.size, largest))
+        now = _InteriorPoint(self, np.full(self.give.size, pushed), np.full(self.give.size, largest))
         for _ in range(INTERIOR_STEPS):
             if now.gap <= SETTLED * float(now.step @ now.step) and np.abs(now.missed).max() <= MET * largest:
                 break
@@ -89,7 +90,7 @@ class Conditions:
         return np.where(now.multipliers * stiffness > now.spare, now.multipliers, 0.0)
 
 
-class _Interior:
+class _InteriorPoint:
     """Of each condition a multiplier and what is to spare, both positive.
 
     To spare is rows u + give multipliers - asked: 0 where a condition pushes, while the multiplier is 0 where not.
@@ -101,24 +102,27 @@ class _Interior:
         self.missed = given.rows @ self.step + given.give * multipliers - given.asked - spare  #: (C,)
         self.gap = float(multipliers @ spare)  #: cost of this step over that of the best one, once nothing is missed
         self._yielding = given.give + spare / multipliers
-        self._root: tuple[FloatArray, bool] | None = None
 
-    def nearer(self) -> _Interior:
+    @cached_property
+    def _root(self) -> tuple[FloatArray, bool]:
+        """Factor (V, V) of the second derivative of a step's cost."""
+        scaled = self._given.rows / np.sqrt(self._yielding)[:, None]
+        curvature = scaled.T @ scaled
+        curvature[np.diag_indices_from(curvature)] += 1.0
+        factor: tuple[FloatArray, bool] = cho_factor(curvature, overwrite_a=True, check_finite=False)
+        return factor
+
+    def nearer(self) -> _InteriorPoint:
         """The next point, by Mehrotra's predictor and corrector."""
         more, wider, share = self._towards(np.zeros(self.spare.size))
         left = float((self.multipliers + share * more) @ (self.spare + share * wider)) / self.gap
         more, wider, share = self._towards(left**3 * self.gap / self.spare.size - more * wider)
         share *= KEPT_POSITIVE
-        return _Interior(self._given, self.multipliers + share * more, self.spare + share * wider)
+        return _InteriorPoint(self._given, self.multipliers + share * more, self.spare + share * wider)
 
     def _towards(self, products: FloatArray) -> tuple[FloatArray, FloatArray, float]:
         """Changes of both (C,) to these products, and the share of them that keeps both positive."""
         rows, multipliers, spare = self._given.rows, self.multipliers, self.spare
-        if self._root is None:
-            scaled = rows / np.sqrt(self._yielding)[:, None]
-            curvature = scaled.T @ scaled
-            curvature[np.diag_indices_from(curvature)] += 1.0
-            self._root = cho_factor(curvature, overwrite_a=True, check_finite=False)
         wanted = (products / multipliers - spare - self.missed) / self._yielding
         more = wanted - rows @ cho_solve(self._root, rows.T @ wanted, check_finite=False) / self._yielding
         wider = (products - spare * more) / multipliers - spare

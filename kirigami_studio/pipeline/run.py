@@ -763,7 +763,8 @@ def answers(
 ) -> Generator[tuple[int, TaskResult] | None]:
     """Do tasks in order; yield (place in ``tasks``, answer) in the order in which they end, and None in between.
 
-    The first is None: workers have got work then, also those that start, and this process begins none before the next.
+    The first is None: workers have got work then, of little size also those that start, and this process begins none
+    before the next.
     Ends early when the watch's budget is used up: tasks under way then answer with the best so far, others not at all.
     The caller looks at the cancel flag at every yield; closing this iterator stops the work within one step.
     """
