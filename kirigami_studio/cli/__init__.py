@@ -15,8 +15,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from kirigami_studio.cli.console import STREAM, sentences_to
-from kirigami_studio.cli.parser import build_parser
+from kirigami_studio.cli.parser import build_parser, open_window
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
+from kirigami_studio.foundation.garbage import collect_seldom
 from kirigami_studio.foundation.log import quiet_libraries
 
 #: What a frozen program is started with to be a polishing worker, see ``pipeline.pool``.
@@ -39,6 +40,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     shown = words if len(words) == 1 and Path(words[0]).suffix and Path(words[0]).is_file() else []
     arguments = build_parser().parse_args([] if shown else words)
     arguments.shown = shown
+    if argv is None and arguments.run is not open_window:
+        collect_seldom()
     try:
         with sentences_to(None if getattr(arguments, "quiet", False) else "stdout"):
             code = _run(arguments)

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import BinaryIO
 
+from kirigami_studio.foundation.garbage import collect_seldom
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.tasks import Task, TaskResult
 
@@ -79,6 +80,7 @@ WORKER_FLAG = "--worker"
 
 def serve() -> int:
     """Work until the input ends."""
+    collect_seldom()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program, which then closes the pipe
     # What a library prints must not get between the answers.
     answers = _Outbox(os.fdopen(os.dup(1), "wb"))
