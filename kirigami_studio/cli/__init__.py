@@ -19,9 +19,8 @@ from kirigami_studio.cli.parser import build_parser, open_window
 from kirigami_studio.foundation.errors import KirigamiError, UsageError
 from kirigami_studio.foundation.garbage import collect_seldom
 from kirigami_studio.foundation.log import quiet_libraries
+from kirigami_studio.pipeline.worker import WORKER_FLAG, serve
 
-#: What a frozen program is started with to be a polishing worker, see ``pipeline.pool``.
-WORKER_FLAG = "--worker"
 #: Exit code of programs that Ctrl+C ends, as shells count it: 128 and the number of the signal.
 INTERRUPTED = 128 + signal.SIGINT
 
@@ -33,8 +32,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         quiet_libraries()
     words = list(sys.argv[1:] if argv is None else argv)
     if words == [WORKER_FLAG]:
-        from kirigami_studio.pipeline.worker import serve
-
         return serve()
     # A file manager starts the program with the name of a file alone; no sub-command has a dot.
     shown = words if len(words) == 1 and Path(words[0]).suffix and Path(words[0]).is_file() else []

@@ -15,7 +15,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +71,7 @@ from kirigami_studio.foundation.arrays import FloatArray, ShapeRings
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.foundation.files import write_atomically
 from kirigami_studio.foundation.frozen_mapping import FrozenMapping
+from kirigami_studio.foundation.processes import Beside, by_itself
 from kirigami_studio.foundation.words import mark, tr, tr_n
 
 #: Angles of the motion from flat to the target.
@@ -246,6 +247,7 @@ def write_assembly(
     folder: str | Path,
     kinds: Sequence[str] = KINDS,
     judged: Callable[[Sequence[Verification]], str] | None = None,
+    beside: Beside = by_itself,
 ) -> AssemblyFiles:
     """Write the whole folder.
 
@@ -258,6 +260,8 @@ def write_assembly(
         Extensions of the cut files; projects are left out where the profile wants closed contours for a service.
     judged : function, optional
         Gets what was read back and returns the level of the verdict, which the files repeat.
+    beside : Beside
+        Those who write some of the files meanwhile.
 
     Raises
     ------
@@ -271,7 +275,7 @@ def write_assembly(
     wanted = [kind for kind in kinds if kind != ".lbrn2" or not find_profile(job.profile).slots]
     with whole_folder(home, OWN_NAME) as fresh:
         while True:
-            verified = _filled(job, fresh, home, wanted)
+            verified = _filled(job, fresh, home, wanted, beside)
             level = job.verdict if judged is None else judged(verified)
             if level == job.verdict:
                 break
@@ -281,42 +285,59 @@ def write_assembly(
     return AssemblyFiles(tuple(home / name for name in names), tuple(verified))
 
 
-def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str]) -> list[Verification]:
-    """Write all files into a new folder and read them back."""
+def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str], beside: Beside) -> list[Verification]:
+    """Write all files into a new folder and read them back; those after the first kind ``beside`` this process."""
+    place = fresh.absolute()  # others may have another working folder
+    files = [_cut_files(job, kind) for kind in kinds]
+    works: list[list[Callable[[], Any]]] = [[partial(one.written, place) for one in of_kind] for of_kind in files]
+    first, later = works[:1], works[1:] or [[]]
+    later[-1].append(partial(write_assembly_pdf, _assembly_sheet(job), place / SHEET, job.paper))
     verified: list[Verification] = []
-    by_kind: dict[str, dict[str, FoundPiece]] = {}
+    by_kind: dict[str, dict[str, FoundPiece]] = {kind: {} for kind in kinds}
     moving, known = job.whole.by_id, KnownOutlines()
-    for kind in kinds:
-        if job.glued is not None:
-            verified.append(_hinge_layer_written(job, job.glued, fresh, home, kind))
-        for bed in job.beds:
-            found, pieces = _bed_written(job, bed, fresh, home, kind, known)
-            verified.append(found)
-            by_kind.setdefault(kind, {}).update({piece.id: piece for piece in pieces if piece.id in moving})
-    record = pieces_json(job.whole, holds=job.holds)
-    write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
+
+    def verify(of_kind: Sequence[_CutFile], written: Sequence[_Written]) -> None:
+        for one, found in zip(of_kind, written, strict=False):  # after cut files there may be the assembly sheet
+            verification, pieces = one.verified(job, home, found, known)
+            verified.append(verification)
+            by_kind[one.kind].update({piece.id: piece for piece in pieces if piece.id in moving})
+
+    with beside([partial(_all_done, works) for works in later]) as answers:
+        record = pieces_json(job.whole, holds=job.holds)
+        write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
+        write_atomically(fresh / PARTS, parts_csv(job).encode())
+        if job.drive is not None and set(kinds) >= set(KINDS[:2]):
+            _write_solids(job, fresh)
+        for of_kind, own in zip(files, first, strict=False):
+            verify(of_kind, _all_done(own))
+        for of_kind, written in zip(files[1:], answers(), strict=False):  # the sheet alone, with one kind
+            verify(of_kind, written)
     verified.append(_motion_verified(job, record, fresh / PIECES, home / PIECES, by_kind, known))
-    write_atomically(fresh / PARTS, parts_csv(job).encode())
-    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
-    sheet = replace(sheet, grips=job.grips)
-    if (glued := job.glued) is not None:
-        template = board_bed(glued.board, 0.0)
-        sheet = replace(
-            sheet,
-            steps=glued.steps,
-            legend={2: mark("tiles")},
-            hold_steps=SIDE_BY_SIDE_STEPS,
-            template=template,
-            under=glued.under,
-        )
-    write_assembly_pdf(sheet, fresh / SHEET, job.paper)
-    if job.drive is not None and set(kinds) >= set(KINDS[:2]):
-        _write_solids(job, fresh)
     for one in verified:
         for finding in one.findings:
             if not finding.ok:
                 raise ExportError("assembly.not_as_meant", name=one.path.name, finding=finding.text)
     return verified
+
+
+def _all_done(works: Sequence[Callable[[], Any]]) -> list[Any]:
+    """The results of some work, one after the other."""
+    return [work() for work in works]
+
+
+def _assembly_sheet(job: AssemblyJob) -> AssemblySheet:
+    sheet = AssemblySheet(job.assembly, job.beds, _about(job), _part_lines(job), job.target, job.holds, job.drive)
+    sheet = replace(sheet, grips=job.grips)
+    if (glued := job.glued) is None:
+        return sheet
+    return replace(
+        sheet,
+        steps=glued.steps,
+        legend={2: mark("tiles")},
+        hold_steps=SIDE_BY_SIDE_STEPS,
+        template=board_bed(glued.board, 0.0),
+        under=glued.under,
+    )
 
 
 # cut files ------------------------------------------------------------------------------------------------------------
@@ -355,17 +376,100 @@ def bed_facts(job: AssemblyJob, bed: CutBed, strokes: Sequence[Stroke]) -> dict[
     }
 
 
-def _bed_written(
-    job: AssemblyJob, bed: CutBed, fresh: Path, home: Path, kind: str, known: KnownOutlines
-) -> tuple[Verification, list[FoundPiece]]:
-    """Write a bed's file, and find its pieces in it."""
-    profile = find_profile(PROJECT_PROFILE if kind == ".lbrn2" else job.profile)
-    strokes = bed.strokes(profile)
-    facts = bed_facts(job, bed, strokes)
-    record = job.record if bed is job.beds[0] and job.glued is None else b""
-    cut = job.material, job.machine
-    path, contents, found = _strokes_written(job, bed.name, kind, strokes, profile, facts, record, cut, fresh)
-    return _bed_verified(job, bed, home / path.name, contents, known, found)
+@dataclass(frozen=True, slots=True)
+class _Written:
+    """A file, or a folder of layers, as it was written.
+
+    Attributes
+    ----------
+    name : str
+    contents : list of FileContent
+        As both readers have them.
+    findings : list of Finding
+    """
+
+    name: str
+    contents: list[FileContent]
+    findings: list[Finding]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _CutFile:
+    """A cut file to be written."""
+
+    name: str  #: without extension
+    kind: str
+    strokes: Sequence[Stroke]
+    facts: dict[str, str]
+    record: bytes  #: the packed design; empty for none
+    material: Material
+    machine: Machine
+    profile: Profile
+    dxf_version: DxfVersion
+    bed: CutBed | None  #: that it cuts; None for the hinge layer
+
+    def written(self, folder: Path) -> _Written:
+        """Write it, or a folder of layers, and read it twice."""
+        kind, strokes, facts, profile = self.kind, self.strokes, self.facts, self.profile
+        path, how = folder / f"{self.name}{kind}", PROJECT if kind == ".lbrn2" else FORMATS[kind]
+        if kind == ".lbrn2":
+            write_project(strokes_lightburn(strokes, self.material, self.machine, facts), strokes, path)
+        elif kind == ".svg":
+            title = f"Kirigami pieces, layer {facts['LAYER']}, bed {facts['BED'].partition(' ')[0]}"
+            content = strokes_svg(strokes, title, facts, profile.svg_dpi, self.record)
+            write_svg(content, path, len(strokes), extent(strokes))
+        elif profile.file_per_layer:
+            path = folder / self.name
+            path.mkdir()
+            fill_layer_folder(path, strokes, self.dxf_version, facts, self.record)
+            strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
+        else:
+            drawing = strokes_dxf(strokes, extent(strokes), self.dxf_version, facts, record=self.record)
+            write_atomically(path, drawing, lambda one: check_written(one, strokes, extent(strokes), self.dxf_version))
+        contents = [_content(read, path) for read in how.readers]
+        version = "R2010" if kind != ".dxf" else self.dxf_version
+        findings = agreed(contents, [reader_findings(one, strokes, version, how) for one in contents])
+        return _Written(path.name, contents, findings)
+
+    def verified(
+        self, job: AssemblyJob, home: Path, written: _Written, known: KnownOutlines
+    ) -> tuple[Verification, list[FoundPiece]]:
+        """Find its pieces, or the hinge layer, in what was written."""
+        path, contents, findings = home / written.name, written.contents, written.findings
+        if self.bed is not None:
+            return _bed_verified(job, self.bed, path, contents, known, findings)
+        assert job.glued is not None  # others have no hinge layer
+        return _hinge_layer_verified(job.glued, path, contents, findings, self.profile), []
+
+
+def _cut_files(job: AssemblyJob, kind: str) -> list[_CutFile]:
+    """The cut files of a kind: the hinge layer, if there is one, and every bed."""
+    profile, cut, glued = _profile_of(job, kind), (job.material, job.machine), job.glued
+    files: list[_CutFile] = []
+    if glued is not None:
+        plan, own = glued.plan, _hinge_profile(job, kind)
+        strokes = glued.strokes(own)
+        facts = glued.facts(own, strokes) | origin_facts(job.provenance)
+        facts |= {VERDICT: job.verdict} if job.verdict else {}
+        sheet = plan.material, plan.machine
+        files.append(_CutFile(HINGE_LAYER, kind, strokes, facts, job.record, *sheet, own, job.dxf_version, None))
+    for bed in job.beds:
+        strokes = bed.strokes(profile)
+        facts = bed_facts(job, bed, strokes)
+        record = job.record if bed is job.beds[0] and glued is None else b""
+        files.append(_CutFile(bed.name, kind, strokes, facts, record, *cut, profile, job.dxf_version, bed))
+    return files
+
+
+def _profile_of(job: AssemblyJob, kind: str) -> Profile:
+    """The profile of the files of a kind; projects have their own."""
+    return find_profile(PROJECT_PROFILE if kind == ".lbrn2" else job.profile)
+
+
+def _hinge_profile(job: AssemblyJob, kind: str) -> Profile:
+    """That of the hinge layer: projects have arcs by other curves, which their readers do not take for arcs."""
+    profile = _profile_of(job, kind)
+    return replace(profile, flatten=True) if kind == ".lbrn2" else profile
 
 
 def read_bed(job: AssemblyJob, bed: CutBed, path: Path, known: KnownOutlines) -> tuple[Verification, list[FoundPiece]]:
@@ -427,49 +531,6 @@ def _bed_verified(
     return verification, of_pieces[-1][1]
 
 
-def _strokes_written(
-    job: AssemblyJob,
-    name: str,
-    kind: str,
-    strokes: Sequence[Stroke],
-    profile: Profile,
-    facts: dict[str, str],
-    record: bytes,
-    cut: tuple[Material, Machine],
-    fresh: Path,
-) -> tuple[Path, list[FileContent], list[Finding]]:
-    """Write a file, or a folder of layers, and read it twice."""
-    path, how = fresh / f"{name}{kind}", PROJECT if kind == ".lbrn2" else FORMATS[kind]
-    if kind == ".lbrn2":
-        write_project(strokes_lightburn(strokes, *cut, facts), strokes, path)
-    elif kind == ".svg":
-        title = f"Kirigami pieces, layer {facts['LAYER']}, bed {facts['BED'].partition(' ')[0]}"
-        write_svg(strokes_svg(strokes, title, facts, profile.svg_dpi, record), path, len(strokes), extent(strokes))
-    elif profile.file_per_layer:
-        path = fresh / name
-        path.mkdir()
-        fill_layer_folder(path, strokes, job.dxf_version, facts, record)
-        strokes = tuple(stroke for part in by_layer(strokes).values() for stroke in part)
-    else:
-        content = strokes_dxf(strokes, extent(strokes), job.dxf_version, facts, record=record)
-        write_atomically(path, content, lambda one: check_written(one, strokes, extent(strokes), job.dxf_version))
-    contents = [_content(read, path) for read in how.readers]
-    version = "R2010" if kind != ".dxf" else job.dxf_version
-    return path, contents, agreed(contents, [reader_findings(one, strokes, version, how) for one in contents])
-
-
-def _hinge_layer_written(job: AssemblyJob, glued: Glued, fresh: Path, home: Path, kind: str) -> Verification:
-    """Write the hinge layer with its registration holes, and judge its file."""
-    # Projects have arcs by other curves, which their readers do not take for arcs.
-    profile = replace(find_profile(PROJECT_PROFILE), flatten=True) if kind == ".lbrn2" else find_profile(job.profile)
-    strokes = glued.strokes(profile)
-    facts = glued.facts(profile, strokes) | origin_facts(job.provenance)
-    facts |= {VERDICT: job.verdict} if job.verdict else {}
-    cut = glued.plan.material, glued.plan.machine
-    path, contents, found = _strokes_written(job, HINGE_LAYER, kind, strokes, profile, facts, job.record, cut, fresh)
-    return _hinge_layer_verified(glued, home / path.name, contents, found, profile)
-
-
 def read_hinge_layer(job: AssemblyJob, glued: Glued, path: Path) -> Verification:
     """Judge the hinge layer in a file of any origin, by both readers.
 
@@ -486,9 +547,7 @@ def read_hinge_layer(job: AssemblyJob, glued: Glued, path: Path) -> Verification
     ExportError
         Missing, damaged, or of another kind.
     """
-    how, profile = _format_of(path), find_profile(job.profile)
-    if path.suffix.lower() == ".lbrn2":
-        profile = replace(find_profile(PROJECT_PROFILE), flatten=True)
+    how, profile = _format_of(path), _hinge_profile(job, path.suffix.lower())
     contents = [_content(read, path) for read in how.readers]
     return _hinge_layer_verified(glued, path, contents, [], profile)
 

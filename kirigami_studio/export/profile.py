@@ -17,6 +17,7 @@ from types import MappingProxyType
 from kirigami_studio.fabricate.cut_plan import Layer
 from kirigami_studio.fabricate.findings import Note
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.frozen_mapping import FrozenMapping
 from kirigami_studio.foundation.words import mark
 
 RED, GREEN, CYAN, BLUE, MAGENTA, WHITE, ORANGE = 1, 3, 4, 5, 6, 7, 30
@@ -78,8 +79,8 @@ class Profile:
         return SLOT_LAYER if self.slots and layer not in (Layer.HOLES, Layer.KISS, Layer.OUTLINE) else layer.value
 
 
-_ALL_RED = MappingProxyType(dict.fromkeys(Layer, RED))
-_BY_LAYER = MappingProxyType(
+_ALL_RED = FrozenMapping(dict.fromkeys(Layer, RED))
+_BY_LAYER = FrozenMapping(
     {
         Layer.RELIEF: MAGENTA,
         Layer.HOLES: RED,

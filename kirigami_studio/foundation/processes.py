@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import multiprocessing
 import threading
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
@@ -21,6 +21,9 @@ from kirigami_studio.foundation.threads import one_blas_thread
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
+
+#: Begins work that others do beside this process.  In its context a function waits for the results, in order, once.
+Beside = Callable[[Sequence[Callable[[], Any]]], AbstractContextManager[Callable[[], list[Any]]]]
 
 #: Seconds that a scheduler has to answer, and that it has to have a worker.
 PATIENCE = 5.0
@@ -41,6 +44,12 @@ class Workers:
 
 #: This process does everything.
 HERE = Workers()
+
+
+@contextmanager
+def by_itself(works: Sequence[Callable[[], Any]]) -> Iterator[Callable[[], list[Any]]]:
+    """Nobody is beside this process: it does the work when it needs the results."""
+    yield lambda: [work() for work in works]
 
 
 def results_of(

@@ -16,17 +16,18 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Generator, Iterator, Sequence
-from functools import cache
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing, contextmanager
+from functools import cache, partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from typing import IO
+from typing import IO, Any
 
 import kirigami_studio
 from kirigami_studio.foundation.log import topic
-from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import Task, TaskResult
-from kirigami_studio.pipeline.worker import WORKER_FLAG, Alive, Assignment, Done, Failed, Ready, Report, Stop
+from kirigami_studio.foundation.processes import by_itself
+from kirigami_studio.foundation.words import language
+from kirigami_studio.pipeline.worker import WORKER_FLAG, Alive, Assignment, Done, Failed, Ready, Report, Stop, Work
 
 log: logging.Logger = topic("pipeline")
 
@@ -119,7 +120,7 @@ class PolishingWorker:
 
 
 class Pool:
-    """Up to ``size`` workers, for one batch of tasks at a time.
+    """Up to ``size`` workers, for one batch of work at a time.
 
     Parameters
     ----------
@@ -173,10 +174,8 @@ class Pool:
                 except OSError as error:
                     self._give_up(f"worker processes cannot be started: {error}")
 
-    def answers(
-        self, request: Request, tasks: Sequence[tuple[int, Task]], wait: float
-    ) -> Generator[tuple[int, TaskResult] | None]:
-        """Hand out tasks (number, task) in order and yield answers as they come: None once the first are given, and
+    def answers(self, works: Sequence[tuple[int, Work]], wait: float) -> Generator[tuple[int, Any] | None]:
+        """Hand out work (number, work) in order and yield answers as they come: None once the first is given, and
         every ``wait`` seconds without an answer.
 
         Ends early when no worker is left, or soon when the pool already serves another run: the caller does what it got
@@ -187,13 +186,33 @@ class Pool:
         self._batch += 1
         self._winding_down = False
         try:
-            yield from self._served(request, deque(tasks), self._batch, wait)
+            yield from self._served(deque(works), self._batch, wait)
         finally:
             self.wind_down()
             self._taken.release()
 
+    @contextmanager
+    def beside(self, works: Sequence[Callable[[], Any]]) -> Iterator[Callable[[], list[Any]]]:
+        """Begin work that workers do beside this process, see :data:`~kirigami_studio.foundation.processes.Beside`.
+
+        Where none is ready, this process does it; so it does what none of them answers.
+        """
+        if not self.ready:
+            with by_itself(works) as results:
+                yield results
+            return
+        given = [(number, partial(_in_one_go, work)) for number, work in enumerate(works)]
+        with closing(self.answers(given, HANDOVER)) as answers:
+            next(answers, None)
+
+            def answered() -> list[Any]:
+                found = dict(answer for answer in answers if answer is not None)
+                return [found[number] if number in found else work() for number, work in enumerate(works)]
+
+            yield answered
+
     def wind_down(self) -> None:
-        """Begin no more tasks of this batch, and answer those under way with the best so far, within one step."""
+        """Begin no more work of this batch, and answer those under way with the best so far, within one step."""
         self._winding_down = True
         for worker in self.workers:
             if worker.assignment is not None:
@@ -205,9 +224,7 @@ class Pool:
             worker.end()
         self.workers = []
 
-    def _served(
-        self, request: Request, waiting: deque[tuple[int, Task]], batch: int, wait: float
-    ) -> Iterator[tuple[int, TaskResult] | None]:
+    def _served(self, waiting: deque[tuple[int, Work]], batch: int, wait: float) -> Iterator[tuple[int, Any] | None]:
         self.start(len(waiting))
         begun, heard_at = False, time.monotonic()
         while self.workers and (self._under_way(batch) or (waiting and not self._winding_down)):
@@ -216,7 +233,7 @@ class Pool:
             for worker in self.workers:
                 if not waiting or self._winding_down or worker.assignment is not None:
                     continue
-                following = Assignment(batch, waiting[0][0], request, waiting[0][1])
+                following = Assignment(batch, *waiting[0], language())
                 if worker.ready or (not some_ready and len(pickle.dumps(following)) <= PIPE_HOLDS):
                     waiting.popleft()
                     worker.assignment = following
@@ -236,7 +253,7 @@ class Pool:
             assignment = worker.assignment
             self._note(worker, report)
             if report is None and assignment is not None and assignment.batch == batch:
-                waiting.appendleft((assignment.number, assignment.task))
+                waiting.appendleft((assignment.number, assignment.work))
             elif isinstance(report, Failed) and report.batch == batch:
                 raise report.error
             elif isinstance(report, Done) and report.batch == batch:
@@ -283,6 +300,11 @@ class Pool:
         if not self._broken:
             log.warning("polishing goes on in one process: %s", why)
         self._broken = True
+
+
+def _in_one_go(work: Callable[[], Any], stopped: Callable[[], bool]) -> Any:
+    """Work that asks nobody whether to stop."""
+    return work()
 
 
 @cache

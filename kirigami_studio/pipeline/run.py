@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import groupby, zip_longest
 from typing import TYPE_CHECKING
 
@@ -787,7 +788,8 @@ def _by_workers(
     pool: Pool, request: Request, waiting: dict[int, Task], watch: Watch
 ) -> Generator[tuple[int, TaskResult] | None]:
     stopped_at: float | None = None
-    with closing(pool.answers(request, list(waiting.items()), LOOK)) as reports:
+    works = [(number, partial(task.carry_out, request)) for number, task in waiting.items()]
+    with closing(pool.answers(works, LOOK)) as reports:
         for report in reports:
             yield report
             if stopped_at is None and watch.expired():

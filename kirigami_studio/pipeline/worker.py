@@ -14,13 +14,20 @@ import pickle
 import signal
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from queue import SimpleQueue
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from kirigami_studio.foundation.garbage import collect_seldom
-from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.tasks import Task, TaskResult
+from kirigami_studio.foundation.words import choose, language
+
+#: A function that other processes can find, and what it is given, as ``partial`` has them.  It gets a function that
+#: tells whether to stop: the best so far is its answer then.
+Work = Callable[[Callable[[], bool]], Any]
+#: What nearly all work needs, and what takes longest to import.
+NEEDED = "kirigami_studio.pipeline.tasks"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,12 +37,12 @@ class Ready:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """Do task ``number`` of batch ``batch``."""
+    """Do work ``number`` of batch ``batch``."""
 
     batch: int
     number: int
-    request: Request
-    task: Task
+    work: Work
+    language: str  #: in which notes name their facts: the window may have another one than the environment
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +63,7 @@ class Done:
 
     batch: int
     number: int
-    answer: TaskResult
+    answer: Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +94,7 @@ def serve() -> int:
     os.dup2(2, 1)
     inbox = _Inbox(os.fdopen(os.dup(0), "rb"))
     threading.Thread(target=inbox.listen, name="assignments", daemon=True).start()
+    import_module(NEEDED)
     answers.send(Ready())
     threading.Thread(target=answers.show_life, name="signs of life", daemon=True).start()
     while True:
@@ -119,7 +127,9 @@ class _Inbox:
 
 def _carried_out(assignment: Assignment, inbox: _Inbox) -> Report:
     try:
-        answer = assignment.task.carry_out(assignment.request, lambda: inbox.stopped_batch >= assignment.batch)
+        if assignment.language != language():
+            choose(assignment.language)
+        answer = assignment.work(lambda: inbox.stopped_batch >= assignment.batch)
     except Exception as error:
         return Failed(assignment.batch, assignment.number, error)
     return Done(assignment.batch, assignment.number, answer)

@@ -9,11 +9,11 @@ over.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import partial
 
 from kirigami_studio.evaluate.candidate import Candidate
 from kirigami_studio.foundation.errors import Cancelled
-from kirigami_studio.foundation.words import choose, language
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.pipeline.request import Request
@@ -39,8 +39,6 @@ class LookTask:
     candidate: Candidate
     settings: FabricationSettings
     target: Outline
-    #: In which notes name their facts: the window may have another one than the environment of its workers.
-    language: str = field(default_factory=language)
 
     def carry_out(self, request: Request, stopped: Callable[[], bool]) -> TaskResult:
         """Look.
@@ -50,8 +48,6 @@ class LookTask:
         Cancelled
             ``stopped`` returned true: half a look is none.
         """
-        if self.language != language():
-            choose(self.language)
         steps = looking(self.candidate, self.settings, self.target, stopped)
         while True:
             try:
@@ -89,7 +85,7 @@ class LooksAhead:
         self._candidates, self._cancel = candidates, cancel
         self._settings, self._target = settings, request.target
         tasks = [LookTask(one, settings, request.target) for one in candidates]
-        self._answers = pool.answers(request, list(enumerate(tasks)), LOOK)
+        self._answers = pool.answers([(n, partial(task.carry_out, request)) for n, task in enumerate(tasks)], LOOK)
         self._found: dict[Candidate, CloseLook] = {}
 
     def has(self, one: Candidate) -> bool:

@@ -601,6 +601,7 @@ def _layers_written(
     from kirigami_studio.export.assembly_files import KINDS, AssemblyJob, write_assembly
     from kirigami_studio.export.print_files import KINDS as PRINTED
     from kirigami_studio.export.print_files import write_print
+    from kirigami_studio.pipeline.pool import shared_pool
 
     kinds = KINDS if isinstance(job, AssemblyJob) else PRINTED
     kind = output.path.suffix.lower()
@@ -610,7 +611,8 @@ def _layers_written(
     folder = output.path.with_suffix("") if output.name is None else output.path
     try:
         if isinstance(job, AssemblyJob):
-            return folder, write_assembly(job, folder, wanted, lambda read: judge(read).level.value)
+            beside = shared_pool().beside
+            return folder, write_assembly(job, folder, wanted, lambda read: judge(read).level.value, beside)
         return folder, write_print(job, folder, wanted, lambda read: judge(read).level.value)
     except ExportError as error:
         broken = next((one for one in problems if one.severity is Severity.ERROR), None)

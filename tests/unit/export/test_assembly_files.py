@@ -428,7 +428,7 @@ def test_that_files_of_three_kinds_are_written_once_and_their_outlines_worked_ou
         (pieces_read, "_pieces_among"),
         (pieces_read, "passing"),
         (pieces_read, "_pin_finding"),
-        (assembly_files, "_bed_written"),
+        (assembly_files, "_bed_verified"),
     ):
         original = getattr(module, name)
 
@@ -439,7 +439,7 @@ def test_that_files_of_three_kinds_are_written_once_and_their_outlines_worked_ou
         monkeypatch.setattr(module, name, counted)
     job = job_of(assembly, verdict="ready_to_cut")
     write_assembly(job, tmp_path / "out", judged=lambda _: "ready_to_cut")
-    assert work["_bed_written"] == len(KINDS) * len(job.beds), "the verdict was known before: nothing is written twice"
+    assert work["_bed_verified"] == len(KINDS) * len(job.beds), "the verdict was known before: nothing is written twice"
     assert work["_finished"] == len(assembly.pieces), "every outline once, whatever the kind and the reader"
     assert work["_pieces_among"] == len(job.beds), "readers and kinds agree"
     assert work["passing"] == 2, "both layers are moved once"

@@ -9,12 +9,12 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import psutil
 import pytest
 
-from kirigami_studio import cli
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -194,7 +194,7 @@ def test_that_a_worker_says_that_it_lives_while_it_works(request_for_heart: Requ
     (candidate,) = scored(large, [Sheet(RatioField.from_log10(draw.uniform(-0.4, 0.4, large.grid)))], 0)
     with subprocess.Popen(worker_command(), stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdin is not None and process.stdout is not None
-        process.stdin.write(pickle.dumps(Assignment(1, 0, large, PolishTask(candidate, 30))))
+        process.stdin.write(pickle.dumps(Assignment(1, 0, partial(PolishTask(candidate, 30).carry_out, large), "en")))
         process.stdin.flush()
         reports = [pickle.load(process.stdout)]
         while not isinstance(reports[-1], Done):
@@ -295,7 +295,6 @@ def test_that_closing_the_pool_leaves_no_process(request_for_heart: Request, tas
 
 
 def test_that_a_frozen_program_is_a_worker_by_its_flag() -> None:
-    assert cli.WORKER_FLAG == worker.WORKER_FLAG
     command = [sys.executable, "-m", "kirigami_studio", worker.WORKER_FLAG]
     served = subprocess.run(command, input=b"", capture_output=True, timeout=60, check=False)
     assert (served.returncode, served.stderr) == (0, b"")
@@ -319,7 +318,7 @@ def test_that_workers_choose_the_grid_that_one_process_chooses_and_that_it_is_re
     monkeypatch.setattr(auto_grid, "_CHOSEN", {})
     batches: list[int] = []
     by_workers = pool.answers
-    monkeypatch.setattr(pool, "answers", lambda *given: batches.append(len(given[1])) or by_workers(*given))
+    monkeypatch.setattr(pool, "answers", lambda *given: batches.append(len(given[0])) or by_workers(*given))
     assert grid_choice(request, pool) == alone
     assert batches == [auto_grid.TRIED_POSES * int(str(dict(alone.fields)["count"]))]
     assert grid_choice(request, pool) == alone and len(batches) == 1

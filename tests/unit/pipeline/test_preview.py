@@ -75,10 +75,10 @@ def test_that_a_batch_waits_for_one_that_was_just_stopped(small: Request, monkey
     monkeypatch.setattr(pools, "HANDOVER", 60.0)
     workers = Pool(2)
     monkeypatch.setattr(workers, "_served", lambda *batch: iter([None]))
-    stopped = workers.answers(small, [], 0.01)  # a preview's, which has not looked at its cancel flag yet
+    stopped = workers.answers([], 0.01)  # a preview's, which has not looked at its cancel flag yet
     next(stopped)
     threading.Timer(0.05, stopped.close).start()
-    assert list(workers.answers(small, [], 0.01)) == [None]
+    assert list(workers.answers([], 0.01)) == [None]
 
 
 def test_that_previews_of_requests_that_differ_in_the_search_alone_are_one(small: Request) -> None:
