@@ -29,6 +29,7 @@ from kirigami_studio.fabricate.options import CutOptions
 from kirigami_studio.foundation.errors import UsageError
 from kirigami_studio.outlines.merging import Join
 from kirigami_studio.outlines.starts import StartShape
+from kirigami_studio.pipeline.pool import shared_pool
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.settings.design import DesignChoices
 from kirigami_studio.settings.fabrication import FabricationSettings
@@ -44,6 +45,7 @@ class SubCommand:
     run: str  #: ``module:function`` of ``cli``, or of ``lab`` with its folder, imported when the command is called
     options: tuple[Option, ...]  #: ``add_argument`` calls
     examples: tuple[str, ...]
+    fits: bool = False  #: whether it polishes: workers start while its modules are imported
 
 
 JSON = option("--json", action="store_true", help="print JSON on standard output, nothing else")
@@ -172,7 +174,7 @@ SUB_COMMANDS: tuple[SubCommand, ...] = (
         "kirigami-studio design masks.npz --k 1 --json",
         "kirigami-studio design - --k 8 --json < drawing.svg",
         "kirigami-studio design drawings --scheduler tcp://10.0.0.5:8786 --out out/drawings",
-    )),
+    ), fits=True),
     SubCommand("decode", "print the exact layouts of sheets", "geometry:decode", (
         option("sheets", nargs="+", metavar="SHEET",
                help=".json or .npy, .kiri (its chosen design), folder, or .npz with 'ratios'"),
@@ -438,7 +440,7 @@ def build_parser() -> argparse.ArgumentParser:
             child.add_argument(*names, **settings)
         # A suite that has --variants must not take another suite's --variant for it.
         child.allow_abbrev = first != "benchmark"
-        child.set_defaults(run=_late(command.run))
+        child.set_defaults(run=_late(command))
     if not has_lab():
         for name in LAB_GROUPS:
             commands.add_parser(name, add_help=False, prefix_chars="\0").add_argument("words", nargs="*")
@@ -469,11 +471,13 @@ def _refuse_research(arguments: argparse.Namespace) -> int:
     raise UsageError("training.needs_python")
 
 
-def _late(place: str) -> Callable[[argparse.Namespace], int]:
+def _late(command: SubCommand) -> Callable[[argparse.Namespace], int]:
     """Import a command's function only when it is called: ``--help`` and the window stay quick."""
 
     def call(arguments: argparse.Namespace) -> int:
-        return command_function(place)(arguments)
+        if command.fits and not arguments.scheduler:  # a cluster has workers of its own
+            shared_pool().start()
+        return command_function(command.run)(arguments)
 
     return call
 

@@ -193,9 +193,9 @@ class Pool:
 
     @contextmanager
     def beside(self, works: Sequence[Callable[[], Any]]) -> Iterator[Callable[[], list[Any]]]:
-        """Begin work that workers do beside this process, see :data:`~kirigami_studio.foundation.processes.Beside`.
+        """Begin work that workers do beside this process (``foundation.processes.Beside``).
 
-        Where none is ready, this process does it; so it does what none of them answers.
+        This process does what none of them answers, and all where none is ready.
         """
         if not self.ready:
             with by_itself(works) as results:

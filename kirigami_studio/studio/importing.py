@@ -82,6 +82,7 @@ def import_as_cut() -> None:
     """What closes sheets as cut, judges them, and tries fixes."""
     with quietly():
         from kirigami_studio.studio import fixes as _fixes  # noqa: F401
+        from kirigami_studio.studio import looking_ahead as _looking_ahead  # noqa: F401
 
 
 @cache

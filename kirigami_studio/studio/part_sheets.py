@@ -40,7 +40,6 @@ from kirigami_studio.studio.making import (
     written,
     written_pieces,
 )
-from kirigami_studio.studio.verdict import RANK, Verdict
 
 if TYPE_CHECKING:
     from kirigami_studio.export.bed_files import BedFile
@@ -48,6 +47,7 @@ if TYPE_CHECKING:
     from kirigami_studio.export.sheet_bed import SheetBed
     from kirigami_studio.export.verification import Verification
     from kirigami_studio.studio.as_cut import AsCut
+    from kirigami_studio.studio.verdict import Verdict
 
 #: Kinds of pictures that show all parts of a project.
 PICTURED = frozenset({".png", ".gif", ".html"})
@@ -151,6 +151,8 @@ def part_sheets(
 
 def worst_of(verdicts: Sequence[Verdict]) -> Verdict:
     """The verdict on the sheet that does worst: the whole is no better."""
+    from kirigami_studio.studio.verdict import RANK
+
     return max(verdicts, key=lambda verdict: RANK[verdict.level])
 
 
