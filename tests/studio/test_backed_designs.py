@@ -30,6 +30,7 @@ from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.mechanics.gripping import find_grips, panels_to_pin
+from kirigami_studio.pipeline.pool import Pool
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import new_settings
@@ -50,6 +51,7 @@ from kirigami_studio.studio.making import (
 )
 from kirigami_studio.studio.verdict import Level, look_at
 from tests.square_documents import square_document
+from tests.work_elsewhere import elsewhere
 
 LAYERS = {f"layer-{layer}{kind}" for layer in (1, 2) for kind in (".dxf", ".svg", ".lbrn2")}
 
@@ -124,6 +126,15 @@ def test_that_all_files_of_both_layers_are_there_and_checked(written: Path, caps
         said = json.loads(capsys.readouterr().out)
         assert said["sound"] and said["verdict_at_export"] == "ready_to_cut"
         assert said["record"]["construction"] == "backed" and said["pieces"] == (1 if "-1" in name else 17)
+
+
+def test_that_workers_may_write_the_files(
+    square: Document, written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Pool, "beside", lambda self, works: elsewhere(works))
+    [*exporting(CutRequest.of(square), Output(tmp_path / "files", "cut"), True, never)]
+    for path in written.iterdir():
+        assert (tmp_path / "files" / path.name).read_bytes() == path.read_bytes(), path.name
 
 
 def test_that_registration_holes_of_both_layers_are_in_one_place(written: Path, made: Planned) -> None:

@@ -7,6 +7,8 @@ import json
 import math
 import shutil
 from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -47,7 +49,10 @@ from kirigami_studio.fabricate.machine import machine_of
 from kirigami_studio.fabricate.material import find_material
 from kirigami_studio.foundation import words
 from kirigami_studio.foundation.errors import ExportError
+from kirigami_studio.foundation.processes import by_itself
+from tests.refusals import refused
 from tests.unit.assembly.pinned_designs import pinwheel, softest
+from tests.work_elsewhere import elsewhere
 
 PLYWOOD = find_material("plywood-co2")
 SMALL_BED = replace(machine_of(PLYWOOD), bed_width_mm=120.0, bed_height_mm=70.0)
@@ -75,6 +80,10 @@ def folder(job: AssemblyJob, tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("assembly") / "pinned"
     write_assembly(job, home)
     return home
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def codes(files: AssemblyFiles) -> set[str]:
@@ -143,6 +152,30 @@ def test_that_holes_are_circles_and_files_say_how_they_were_made(job: AssemblyJo
         assert facts["VERDICT"] == "ready_to_cut" and facts["PIECES"] == f"{len(bed.pieces)}"
 
 
+@pytest.mark.parametrize("kinds", [KINDS, KINDS[:2], (".svg",), ()])
+def test_that_files_are_the_same_whoever_writes_them(job: AssemblyJob, tmp_path: Path, kinds: Sequence[str]) -> None:
+    alone, shared = (
+        write_assembly(job, tmp_path / name, kinds, beside=beside)
+        for name, beside in (("alone", by_itself), ("shared", elsewhere))
+    )
+    assert contents(tmp_path / "shared") == contents(tmp_path / "alone")
+    assert {path.suffix for path in shared.files} == {*kinds, ".json", ".csv", ".pdf"}
+    assert [one.findings for one in shared.verifications] == [one.findings for one in alone.verifications]
+
+
+def test_that_nothing_is_there_where_others_cannot_write(job: AssemblyJob, tmp_path: Path) -> None:
+    @contextmanager
+    def failing(works: Sequence[object]) -> Iterator[Callable[[], list[object]]]:
+        def answers() -> list[object]:
+            raise ExportError("export.stopped", folder=tmp_path)
+
+        yield answers
+
+    with refused(ExportError, "export.stopped"):
+        write_assembly(job, tmp_path / "out", beside=failing)
+    assert not list(tmp_path.iterdir())
+
+
 def test_that_two_readers_find_every_piece_in_every_file(job: AssemblyJob, tmp_path: Path) -> None:
     files = write_assembly(job, tmp_path / "out")
     assert len(files.verifications) == len(KINDS) * len(job.beds) + 1
@@ -197,7 +230,7 @@ def test_that_the_assembly_sheet_is_laid_on_the_paper_that_is_asked_for(
 
 @pytest.mark.parametrize("profile", ["lightburn", "k40", "single", "slots", "layers", "cricut"])
 def test_that_every_profile_gets_files_that_read_back(assembly: Assembly, tmp_path: Path, profile: str) -> None:
-    files = write_assembly(job_of(assembly, profile=profile), tmp_path / "out")
+    files = write_assembly(job_of(assembly, profile=profile), tmp_path / "out", beside=elsewhere)
     assert all(one.ok for one in files.verifications)
     names = {path.name for path in files.files}
     assert ("layer-1.lbrn2" in names) == (profile != "slots")
@@ -330,7 +363,7 @@ def test_that_places_that_hold_the_sheet_are_cut_listed_shown_and_read_back(kind
     wanted = HoldOptions(kind, HoldWhen.BOTH)
     places = held(plan, wanted).places
     job = job_of(with_places(plan.assembly, places), hold=wanted, holds=places, paper=Paper.A4)
-    files = write_assembly(job, tmp_path / "held", (".dxf", ".svg"))
+    files = write_assembly(job, tmp_path / "held", (".dxf", ".svg"), beside=elsewhere)
     assert all(one.ok for one in files.verifications)
     assert ("verify.holds_meet" in codes(files)) == (kind is not HoldKind.TABS)
     record = json.loads((tmp_path / "held/pieces.json").read_bytes())
@@ -364,7 +397,7 @@ def test_that_board_and_arms_are_files_pieces_and_parts_of_the_folder(kind: Driv
     drive, _ = driven(plan, kind, partial(softest, plan))
     assert drive is not None
     job = job_of(plan.assembly, drive=drive, paper=Paper.A4)
-    files = write_assembly(job, tmp_path / "moved")
+    files = write_assembly(job, tmp_path / "moved", beside=elsewhere)
     assert all(one.ok for one in files.verifications) and "verify.pins_meet" in codes(files)
     names = {entry.name for entry in (tmp_path / "moved").iterdir()}
     assert {f"board{extension}" for extension in KINDS} < names

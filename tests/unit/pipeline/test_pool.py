@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 import signal
 import subprocess
@@ -10,11 +11,13 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
 
+from kirigami_studio.foundation import words
 from kirigami_studio.foundation.errors import Cancelled
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
@@ -266,6 +269,43 @@ def test_that_an_error_in_a_worker_reaches_the_run(pool: Pool, request_for_heart
     with pytest.raises(AttributeError, match="carry_out"):
         list(answers(pool, request_for_heart, ["not a task"], watch()))  # type: ignore[list-item]
     assert pool.usable
+
+
+def test_that_workers_do_any_work_beside_this_process(pool: Pool, request: pytest.FixtureRequest) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    request.addfinalizer(lambda: words.choose("en"))
+    words.choose("de")
+    with pool.beside([os.getpid, words.language, Path.cwd]) as answers:
+        assert not pool.ready, "they have begun"
+        worker, language, folder = answers()
+    assert worker in [one.process.pid for one in pool.workers]
+    assert (language, folder) == ("de", Path.cwd())
+    assert pool.ready
+
+
+def test_that_this_process_does_what_no_worker_is_there_for() -> None:
+    asleep = Pool(2)
+    with asleep.beside([os.getpid, words.language]) as answers:
+        assert answers() == [os.getpid(), "en"]
+    assert not asleep.workers, "nobody is started for it"
+
+
+def test_that_this_process_does_the_work_of_workers_that_die(pool: Pool) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    with pool.beside([partial(time.sleep, 0.01), Path.cwd]) as answers:
+        for one in list(pool.workers):
+            one.process.kill()
+        assert answers() == [None, Path.cwd()]
+
+
+def test_that_an_error_in_work_beside_reaches_this_process(pool: Pool) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    with pool.beside([partial(int, "no number")]) as answers, pytest.raises(ValueError, match="no number"):
+        answers()
+    assert pool.ready
 
 
 def test_that_a_second_run_at_the_same_time_works_by_itself(
