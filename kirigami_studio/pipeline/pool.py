@@ -195,21 +195,30 @@ class Pool:
     def beside(self, works: Sequence[Callable[[], Any]]) -> Iterator[Callable[[], list[Any]]]:
         """Begin work that workers do beside this process (``foundation.processes.Beside``).
 
-        This process does what none of them answers, and all where none is ready.
+        This process does what none of them answers, and all where none is ready.  When the context is left, however
+        that is, nobody is at work.
         """
         if not self.ready:
             with by_itself(works) as results:
                 yield results
             return
-        given = [(number, partial(_in_one_go, work)) for number, work in enumerate(works)]
+        given = [(number, partial(_outcome, work)) for number, work in enumerate(works)]
         with closing(self.answers(given, HANDOVER)) as answers:
             next(answers, None)
 
             def answered() -> list[Any]:
                 found = dict(answer for answer in answers if answer is not None)
-                return [found[number] if number in found else work() for number, work in enumerate(works)]
+                outcomes = [found[number] if number in found else _outcome(work) for number, work in enumerate(works)]
+                for error in outcomes:
+                    if isinstance(error, Exception):
+                        raise error
+                return outcomes
 
-            yield answered
+            try:
+                yield answered
+            finally:
+                for _ in answers:  # workers end what they have begun
+                    pass
 
     def wind_down(self) -> None:
         """Begin no more work of this batch, and answer those under way with the best so far, within one step."""
@@ -302,9 +311,12 @@ class Pool:
         self._broken = True
 
 
-def _in_one_go(work: Callable[[], Any], stopped: Callable[[], bool]) -> Any:
-    """Work that asks nobody whether to stop."""
-    return work()
+def _outcome(work: Callable[[], Any], stopped: Callable[[], bool] | None = None) -> Any:
+    """The result of work that asks nobody whether to stop, or the error that it ended with."""
+    try:
+        return work()
+    except Exception as error:
+        return error
 
 
 @cache

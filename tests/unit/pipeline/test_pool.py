@@ -300,12 +300,29 @@ def test_that_this_process_does_the_work_of_workers_that_die(pool: Pool) -> None
         assert answers() == [None, Path.cwd()]
 
 
-def test_that_an_error_in_work_beside_reaches_this_process(pool: Pool) -> None:
+def written_late(path: Path) -> None:
+    """Work that takes a while."""
+    time.sleep(0.3)
+    path.touch()
+
+
+def test_that_an_error_in_work_beside_reaches_this_process_once_all_has_ended(pool: Pool, tmp_path: Path) -> None:
     pool.start()
     wait_until_ready(pool)
-    with pool.beside([partial(int, "no number")]) as answers, pytest.raises(ValueError, match="no number"):
+    works = [partial(int, "no number"), partial(written_late, tmp_path / "late")]
+    with pytest.raises(ValueError, match="no number"), pool.beside(works) as answers:
         answers()
+    assert (tmp_path / "late").exists()
     assert pool.ready
+
+
+def test_that_nobody_is_at_work_any_more_after_an_error_in_this_process(pool: Pool, tmp_path: Path) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    with pytest.raises(ZeroDivisionError), pool.beside([partial(written_late, tmp_path / "late")]):
+        raise ZeroDivisionError
+    assert (tmp_path / "late").exists()
+    assert not any(worker.assignment for worker in pool.workers)
 
 
 def test_that_a_second_run_at_the_same_time_works_by_itself(
