@@ -27,7 +27,7 @@ from kirigami_studio.evaluate.evenness import PanelSizes, panel_sizes
 from kirigami_studio.foundation.arrays import BoolArray, FloatArray, IntArray
 from kirigami_studio.foundation.shortest_step import Conditions, shortest_step
 from kirigami_studio.polish.bounds import ShapeBounds
-from kirigami_studio.polish.normal_equations import FLOOR
+from kirigami_studio.polish.normal_equations import FLOOR, Matrix
 from kirigami_studio.polish.objective import POSE, SETTLED, Look, Objective, Slopes
 from kirigami_studio.polish.pin_room import PinRoom, pin_room
 
@@ -68,7 +68,7 @@ def with_kept_sizes(
     least: float,
     steps: int,
     cancel: Callable[[], bool],
-    stiffness: FloatArray | None = None,
+    stiffness: Matrix | None = None,
     gap: float = 0.0,
 ) -> Sized:
     """Go on from a fitted state until no edge or neck is below ``least``, no pins below ``gap``.
@@ -112,7 +112,7 @@ class _SizeDescent:
         state: FloatArray,
         bounds: ShapeBounds,
         least: tuple[float, float],
-        stiffness: FloatArray | None,
+        stiffness: Matrix | None,
     ) -> None:
         self.objective, self.bounds = objective, bounds
         self.least, self.gap = least

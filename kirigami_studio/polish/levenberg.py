@@ -25,7 +25,7 @@ from kirigami_studio.foundation.errors import AngleError, UsageError
 from kirigami_studio.lattice.deployment import ZIPPED_BELOW, check_phi
 from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet, replace_sheet
-from kirigami_studio.lattice.symmetry import Symmetry
+from kirigami_studio.lattice.symmetry import Symmetry, symmetry_of
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.boundary_target import BoundaryTarget
@@ -33,7 +33,7 @@ from kirigami_studio.polish.bounds import ShapeBounds
 from kirigami_studio.polish.even_panels import EvenPanels
 from kirigami_studio.polish.kept_sizes import with_kept_sizes
 from kirigami_studio.polish.matching import check_excess
-from kirigami_studio.polish.normal_equations import Damped, single_suffices
+from kirigami_studio.polish.normal_equations import SINGLE, Damped, Matrix, single_suffices
 from kirigami_studio.polish.objective import CONVERGED, POSE, TRUST, FitPhase, Look, Objective, SecondTerm, Slopes
 from kirigami_studio.polish.panel_size import check_least
 from kirigami_studio.polish.pinwheel import FIRST_PENALTY, check_gap, pinwheel
@@ -177,7 +177,7 @@ def polish(
         also = SecondTerm(model.at(second.phi), BoundaryTarget.of(second.outline, SAMPLES), second.weight)
         state = np.append(state, _numbers(align(also.model.outline(start), second.outline.points)))
     descent: _Descent | None = None
-    stiffness: FloatArray | None = None
+    stiffness: Matrix | None = None
     if even_panels is not None and not gap and sheet.start is None and sheet.cell == (1.0, 1.0):
         stiffness = uniform_stiffness(sheet.grid, free_rim, model.free_hinges, symmetry)
     for phase in phases:
@@ -210,29 +210,42 @@ def polish(
     )
 
 
-def uniform_stiffness(
-    grid: tuple[int, int], free_rim: bool, free_hinges: bool, symmetry: Symmetry | None
-) -> FloatArray:
+def uniform_stiffness(grid: tuple[int, int], free_rim: bool, free_hinges: bool, symmetry: Symmetry | None) -> Matrix:
     """Second derivative (V, V) of even panels at the uniform sheet of square cells, by the variables of a fit.
 
     It serves fits from anywhere: finding it takes as long as a step, or three of a large sheet.  After 5 and 15 steps
     from 18 samples for a heart and a star fits are as good as with one of their own, found anew every eight steps (mean
     IoU 0.9848 and 0.9895 instead of 0.9815 and 0.9898), and so they are from the uniform sheet.  After 15 steps from 18
     samples of 24 x 24 and 9 of 40 x 40 voids it is 0.9774 and 0.9844; with that of where each fit begins, 0.9776 and
-    0.9837.  The last ones are kept, two of large sheets.
+    0.9837.  The last ones are kept, two of large sheets; those of more than ``SINGLE`` variables in single precision.
     """
     kept = _stiffness if grid[0] * grid[1] <= LARGEST_KEPT else _large_stiffness
     return kept(grid, free_rim, free_hinges, symmetry)
 
 
-def _found_stiffness(grid: tuple[int, int], free_rim: bool, free_hinges: bool, symmetry: Symmetry | None) -> FloatArray:
+def _found_stiffness(grid: tuple[int, int], free_rim: bool, free_hinges: bool, symmetry: Symmetry | None) -> Matrix:
     sheet = Sheet.uniform(*grid)
     model = OutlineModel.of(sheet, 0.0, free_rim, free_hinges=free_hinges)
     decoded = model.decoded(np.zeros(model.size))
-    curvature = EvenPanels.of(sheet).at(decoded.nodes).curvature()
-    return model.node_motion(decoded).curvature(
-        curvature, Basis.of(model.size, symmetry.on(*grid) if symmetry else None)
-    )
+    curvature, motion = EvenPanels.of(sheet).at(decoded.nodes).curvature(), model.node_motion(decoded)
+    kept = symmetry_of(sheet) if symmetry is None else None
+    if kept is None:
+        return motion.curvature(curvature, Basis.of(model.size, symmetry.on(*grid) if symmetry else None))
+    # Variables that the sheet's own symmetry carries into each other have the same rows, in another order.
+    images = kept.on(*grid)
+    source, sign = images.source[:, : model.size], images.sign[:, : model.size]
+    own = np.arange(model.size)
+    first = np.flatnonzero(source.min(axis=0) >= own)
+    rows = motion.curvature(curvature, Basis.of(model.size, None), first).T
+    place = np.full(model.size, -1)
+    place[first] = np.arange(len(first))
+    shape = model.size, model.size
+    whole: Matrix = np.empty(shape, dtype=np.float32) if model.size >= SINGLE else np.empty(shape)
+    whole[first] = rows
+    for number, factor in zip(source, sign, strict=True):
+        known = np.flatnonzero(place[number] >= 0)
+        whole[known] = factor[known, None] * factor * rows[np.ix_(place[number[known]], number)]
+    return whole
 
 
 _stiffness, _large_stiffness = lru_cache(maxsize=32)(_found_stiffness), lru_cache(maxsize=2)(_found_stiffness)
@@ -278,9 +291,7 @@ def check_fit(phi: float, steps: int, trust: float) -> float:
 class _Descent:
     """The moving state of one fit."""
 
-    def __init__(
-        self, objective: Objective, state: FloatArray, bounds: ShapeBounds, stiffness: FloatArray | None
-    ) -> None:
+    def __init__(self, objective: Objective, state: FloatArray, bounds: ShapeBounds, stiffness: Matrix | None) -> None:
         self.objective, self._bounds, self._poses = objective, bounds, objective.poses
         self.here = objective.look(state)
         # A start that touches itself is free to move until it no longer does.

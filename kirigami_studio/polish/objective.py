@@ -34,7 +34,7 @@ from kirigami_studio.polish.even_panels import EvenPanels, EvenPanelsAt
 from kirigami_studio.polish.junctions import OPEN, JunctionAngles, junctions
 from kirigami_studio.polish.large_panels import LARGE, PanelAreas, panel_areas
 from kirigami_studio.polish.matching import Matching, OneSided, check_excess, matched
-from kirigami_studio.polish.normal_equations import Quadratic
+from kirigami_studio.polish.normal_equations import Matrix, Quadratic
 from kirigami_studio.polish.panel_size import PENALTY, shortage
 from kirigami_studio.polish.pin_room import PinRoom, pin_room
 from kirigami_studio.polish.preferences import FieldPreferenceTerms
@@ -206,7 +206,7 @@ class Objective:
         shape, poses = state[: -self.poses], state[-self.poses :]
         return shape, poses[:POSE], poses[POSE:]
 
-    def slopes(self, look: Look, basis: Basis | None = None, stiffness: FloatArray | None = None) -> Slopes:
+    def slopes(self, look: Look, basis: Basis | None = None, stiffness: Matrix | None = None) -> Slopes:
         """Derivatives at a state, by the variables of ``basis``; by the shape's own numbers if missing.
 
         ``stiffness`` (V, V) is the even panels' of a state nearby, to be used again.
@@ -346,7 +346,7 @@ class Slopes:
     outline: FloatArray
     motion: NodeMotion  #: Of the compact nodes
     #: (V, V); second derivative of the term for even panels with weight 1, there or nearby
-    stiffness: FloatArray | None
+    stiffness: Matrix | None
     #: (2 P, V + 4); of the panel centroids in the target's frame, where there is a transport map
     centroids: FloatArray | None
 

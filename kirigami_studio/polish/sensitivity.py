@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix
@@ -508,19 +509,23 @@ class NodeMotion:
             slopes[: model.voids] += through[plan.pair[0]] + through[plan.pair[1]]
         return basis.reduced_rows(slopes).T
 
-    def curvature(self, stiffness: csr_matrix, basis: Basis) -> FloatArray:
+    def curvature(self, stiffness: csr_matrix, basis: Basis, columns: IntArray | None = None) -> FloatArray:
         """Second derivative (V, V) by the variables of p^T ``stiffness`` p / 2, where p (2 N,) is all nodes' x, then y.
 
-        Two solves for each axis take the place of the product of two full derivatives.
+        Two solves for each axis take the place of the product of two full derivatives.  Where ``columns`` are asked
+        for, (V, C) has those alone.
         """
         model, free, given = self.model, self.model._plan.free, self.model._table.node
         first, second = model._plan.pair
-        right = [self._right(axis, basis) for axis in (0, 1)]
+        right: list[Any] = [self._right(axis, basis) for axis in (0, 1)]
         mouths = [self.share * self.along[:, axis] for axis in (0, 1)]
         follow = [basis.reduced(self._wide(each)) for each in mouths]
-        by_shape = np.zeros((model.size, basis.size))
-        blocks = max(1, round(basis.size / BLOCK))
-        for start, end in pairwise(basis.size * number // blocks for number in range(blocks + 1)):
+        if columns is not None:
+            right, follow = [each[:, columns] for each in right], [each[:, columns] for each in follow]
+        count = right[0].shape[1]
+        by_shape = np.zeros((model.size, count))
+        blocks = max(1, round(count / BLOCK))
+        for start, end in pairwise(count * number // blocks for number in range(blocks + 1)):
             block = slice(start, end)
             moved = np.empty((2, model.node_count, end - start))
             for axis in (0, 1):

@@ -12,8 +12,10 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.outlines.silhouettes import load
 from kirigami_studio.polish import even_panels
+from kirigami_studio.polish.basis import Basis
 from kirigami_studio.polish.even_panels import USUAL_WEIGHT, EvenPanels
-from kirigami_studio.polish.levenberg import polish
+from kirigami_studio.polish.levenberg import polish, uniform_stiffness
+from kirigami_studio.polish.sensitivity import OutlineModel
 
 
 def random_nodes(grid: tuple[int, int]) -> tuple[Sheet, np.ndarray]:
@@ -29,6 +31,21 @@ def test_that_the_uniform_sheet_costs_nothing_and_areas_count_by_their_variation
     monkeypatch.setattr(even_panels, "EDGES", 0.0)
     monkeypatch.setattr(even_panels, "AREAS", 1.0)
     assert np.isclose(EvenPanels.of(sheet).at(nodes).value, evenness(deploy(sheet)).area_cv ** 2)
+
+
+@pytest.mark.parametrize("grid", [(4, 4), (5, 5), (4, 5), (5, 4), (4, 6), (3, 7), (24, 24)])
+@pytest.mark.parametrize(("free_rim", "free_hinges"), [(False, False), (True, False), (True, True)])
+def test_that_a_part_of_the_variables_tells_the_curvature_at_the_uniform_sheet(
+    grid: tuple[int, int], free_rim: bool, free_hinges: bool
+) -> None:
+    sheet = Sheet.uniform(*grid)
+    model = OutlineModel.of(sheet, 0.0, free_rim, free_hinges=free_hinges)
+    decoded = model.decoded(np.zeros(model.size))
+    stiffness = EvenPanels.of(sheet).at(decoded.nodes).curvature()
+    whole = model.node_motion(decoded).curvature(stiffness, Basis.of(model.size, None))
+    found = uniform_stiffness(grid, free_rim, free_hinges, None)
+    tolerance = 1e-6 if found.dtype == np.float32 else 1e-12
+    np.testing.assert_allclose(found, whole, rtol=0.0, atol=tolerance * np.abs(whole).max())
 
 
 def test_that_pull_and_curvature_are_the_derivatives() -> None:

@@ -125,6 +125,9 @@ def test_that_the_curvature_is_the_product_of_derivatives(grid: tuple[int, int],
     both = np.concatenate(list(whole))
     expected = both.T @ (stiffness @ both)
     np.testing.assert_allclose(motion.curvature(stiffness, basis), expected, atol=1e-9 * np.abs(expected).max())
+    some = np.arange(basis.size)[1::3]
+    columns = motion.curvature(stiffness, basis, some)
+    np.testing.assert_allclose(columns, expected[:, some], atol=1e-9 * np.abs(expected).max())
     force = np.random.default_rng(3).normal(size=(model.node_count, 2))
     gradient = basis.reduced(motion.gradient(force))
     np.testing.assert_allclose(gradient, force[:, 0] @ whole[0] + force[:, 1] @ whole[1], atol=1e-9)
