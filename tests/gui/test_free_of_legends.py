@@ -13,7 +13,6 @@ from PySide6.QtWidgets import QApplication
 from kirigami_studio.gui.session.overlays import USUAL, Overlay
 from kirigami_studio.gui.stage.layout_view import LayoutView
 from kirigami_studio.gui.widgets.canvas import Canvas
-from kirigami_studio.gui.widgets.colour_scale import bar_boxes
 from kirigami_studio.gui.widgets.legends import AWAY, clear_box
 from kirigami_studio.gui.widgets.view_transform import Bounds, ViewTransform
 from kirigami_studio.gui.window.main_window import MainWindow
@@ -35,7 +34,7 @@ def legends(view: LayoutView) -> list[QRectF]:
     """Where the labels and bars of the last painted picture are."""
     metrics = view.fontMetrics()
     titles = [scale.title for scale in view.scales]
-    return [box for _, box in view.legend(metrics)] + bar_boxes(titles, metrics, view.width() - 10.0, 10.0)
+    return [box for _, box in view.legend(metrics)] + view.bar_boxes(titles)
 
 
 def fill(window: MainWindow, size: tuple[int, int]) -> LayoutView:

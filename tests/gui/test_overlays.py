@@ -21,7 +21,7 @@ from kirigami_studio.gui.session.overlays import USUAL, Overlay
 from kirigami_studio.gui.stage.fault_items import FaultKind, crossing_place
 from kirigami_studio.gui.stage.layout_labels import heat_tiles, quad_areas, smallest_parts
 from kirigami_studio.gui.stage.layout_view import FAULT_SENTENCES, LayoutView, numbered_fault
-from kirigami_studio.gui.widgets.colour_scale import opening_scale, paint_colour_bars, ratio_scale
+from kirigami_studio.gui.widgets.colour_scale import bar_boxes, opening_scale, paint_colour_bars, ratio_scale
 from kirigami_studio.gui.widgets.legends import Chip, legend_boxes, paint_legend
 from kirigami_studio.gui.widgets.mismatch_items import boundary_gap
 from kirigami_studio.gui.widgets.theme import DARK, LIGHT, Palette
@@ -237,7 +237,8 @@ def test_that_labels_and_colour_bars_stay_inside_a_narrow_view(qtbot: QtBot) -> 
     boxes = legend_boxes(chips, QFontMetrics(painter.font()), width, 200.0)
     assert all(box.left() > 0 and box.right() < width for box in boxes)
     paint_legend(painter, chips, boxes, LIGHT)
-    paint_colour_bars(painter, [opening_scale(218.0, LIGHT)], width - 10.0, 10.0, LIGHT)
+    scale = opening_scale(218.0, LIGHT)
+    paint_colour_bars(painter, [scale], bar_boxes([scale.title], painter.fontMetrics(), width - 10.0, 10.0), LIGHT)
     painter.end()
     for edge in (0, 1, width - 2, width - 1):
         assert {picture.pixel(edge, y) for y in range(200)} == {0xFFFF00FF}, "something reaches over the edge"

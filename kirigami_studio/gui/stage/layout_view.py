@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -100,6 +100,8 @@ SHORTEST_GAP = 6.0
 NARROW = 440
 #: Pixels from the top that the caption takes.
 CAPTION_HEIGHT = 44.0
+#: Share of the height from the top that bars below each other may take.
+BARS_SHARE = 0.35
 #: What panels look like below artwork that does not cover them.
 PAPER = "#ffffff"
 #: How much a fault is enlarged over the fitted picture.
@@ -369,11 +371,16 @@ class LayoutView(Canvas):
             return view.adjusted(0, CAPTION_HEIGHT, 0, 0)
         metrics = self.fontMetrics()
         titles = [tr(title) for overlay, title in BAR_TITLES.items() if overlay in self._wanted]
-        legends = bar_boxes(titles, metrics, self.width() - 10.0, self._bars_top())
+        legends = self.bar_boxes(titles)
         if legend:
             chips = self._fitting([usual_chips(self.palette_, brevity) for brevity in range(VERSIONS)], metrics)
             legends += legend_boxes(chips, metrics, self.width(), self.height())
         return clear_box(bounds, view, self.margin(), legends)
+
+    def bar_boxes(self, titles: Sequence[str]) -> list[QRectF]:
+        """Where the bars of scales are; a low view has them beside each other."""
+        lowest = BARS_SHARE * self.height()
+        return bar_boxes(titles, self.fontMetrics(), self.width() - 10.0, self._bars_top(), lowest)
 
     def _bars_top(self) -> float:
         return CAPTION_HEIGHT if self.caption else 10.0
@@ -667,7 +674,7 @@ class LayoutView(Canvas):
         paint_legend(painter, [chip for chip, _ in labels], [box for _, box in labels], self.palette_)
         if self.caption:
             paint_caption(painter, self.caption, self.width(), self.palette_)
-        paint_colour_bars(painter, self.scales, self.width() - 10.0, self._bars_top(), self.palette_)
+        paint_colour_bars(painter, self.scales, self.bar_boxes([one.title for one in self.scales]), self.palette_)
         self.voids.paint_label(painter, self.palette_)
 
 

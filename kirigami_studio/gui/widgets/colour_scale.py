@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -23,8 +24,8 @@ RATIO_ENDS = (1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0, 1000.0, 1e4, 1e6)
 RATIO_TITLE, OPENING_TITLE = mark("side ratio x (log scale)"), mark("void area, mm²")
 #: Sizes of a bar, pixels.
 BAR_WIDTH, BAR_HEIGHT, PADDING = 150.0, 9.0, 10.0
-#: Pixels left of a bar that stay free.
-MARGIN = 6.0
+#: Pixels left of a bar that stay free, and between two bars.
+MARGIN, BETWEEN = 6.0, 6.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,22 +75,39 @@ def opening_scale(largest_mm2: float, palette: Palette) -> ColourScale:
     return ColourScale(ShownUnit.words(tr(OPENING_TITLE)), 0.0, largest_mm2, palette.sequential, ticks)
 
 
-def bar_boxes(titles: Sequence[str], metrics: QFontMetrics, right: float, top: float) -> list[QRectF]:
-    """Places of bars below each other; ``right`` and ``top`` are pixels of the upper right corner."""
+def bar_boxes(
+    titles: Sequence[str], metrics: QFontMetrics, right: float, top: float, lowest: float = math.inf
+) -> list[QRectF]:
+    """Places of bars below each other, or beside each other where they would end below ``lowest``.
+
+    Parameters
+    ----------
+    titles : sequence of str
+    metrics : QFontMetrics
+    right, top : float, pixels
+        Of the upper right corner.
+    lowest : float, pixels
+    """
     height = 2 * metrics.height() + BAR_HEIGHT + 14.0
+    abreast = top + len(titles) * (height + BETWEEN) > lowest
+    room = right - MARGIN  # a narrow view gets narrow bars
+    if abreast:
+        room = (room + BETWEEN) / max(1, len(titles)) - BETWEEN
     boxes = []
-    for title in titles:
+    for title in reversed(titles) if abreast else titles:
         wanted = max(BAR_WIDTH, metrics.horizontalAdvance(title) + 4.0) + 2 * PADDING  # rounded, and so short of it
-        width = min(wanted, right - MARGIN)  # a narrow view gets narrow bars
-        boxes.append(QRectF(right - width, top, width, height))
-        top += height + 6.0
-    return boxes
+        box = QRectF(right - min(wanted, room), top, min(wanted, room), height)
+        boxes.append(box)
+        right, top = (box.left() - BETWEEN, top) if abreast else (right, box.bottom() + BETWEEN)
+    return boxes[::-1] if abreast else boxes
 
 
-def paint_colour_bars(painter: QPainter, scales: list[ColourScale], right: float, top: float, palette: Palette) -> None:
-    """Draw the bars below each other; ``right`` and ``top`` are pixels of the upper right corner."""
+def paint_colour_bars(
+    painter: QPainter, scales: Sequence[ColourScale], boxes: Sequence[QRectF], palette: Palette
+) -> None:
+    """Draw the bars in their places."""
     metrics = painter.fontMetrics()
-    for scale, box in zip(scales, bar_boxes([scale.title for scale in scales], metrics, right, top), strict=True):
+    for scale, box in zip(scales, boxes, strict=True):
         paint_chip(painter, box, palette)
         painter.setPen(QColor(palette.text))
         title = metrics.elidedText(scale.title, Qt.TextElideMode.ElideRight, round(box.width() - 2 * PADDING))
