@@ -17,7 +17,7 @@ from kirigami_studio.fabricate.material import find_material
 
 VOIDS = 6
 #: Processor seconds of the machine for which limits are written.
-MOST_FOR_PIECES, MOST_FOR_FILES = 2.2, 2.9
+MOST_FOR_PIECES, MOST_FOR_FILES = 2.9, 2.9
 
 
 def test_that_pieces_and_their_files_are_made_while_one_waits(tmp_path: Path) -> None:

@@ -72,7 +72,7 @@ def test_that_every_writer_without_room_or_right_says_so_and_leaves_the_old_file
     with tempfile.TemporaryDirectory(prefix="kirigami-writers-") as folder:  # pytest's own are closed to other users
         Path(folder).chmod(0o755)
         lines = lines_of(how, Path(folder, "written"))
-    assert len(lines) == 14
+    assert len(lines) == 22
     assert [line for line in lines if not str(line["said"]).startswith("refused: Cannot write ")] == []
     assert [line for line in lines if line["changed"]] == []
 

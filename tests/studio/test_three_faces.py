@@ -57,7 +57,7 @@ def of_window(qtbot: QtBot, target: str, material: str | None, folder: Path) -> 
             services.generation.generate()
         exported: list[ExportedFiles] = []
         services.exporter.exported.connect(exported.append)
-        services.exporter.export(folder / "window.dxf")
+        services.exporter.export(folder / "window" / "cut.dxf")
         qtbot.waitUntil(lambda: bool(exported), timeout=PATIENCE)
         document, verdict = services.session.document, exported[0].verdict
         assert document.candidate is document.candidates[0] and verdict is not None
@@ -68,7 +68,7 @@ def of_window(qtbot: QtBot, target: str, material: str | None, folder: Path) -> 
         assert shown.to_json() == verdict.to_json()
         order = tuple(one.index for one in document.candidates)
         best = document.candidates[0].sheet.field.ratio.tolist()
-        return Answer(order, best, verdict.to_json(), (folder / "window.dxf").read_bytes())
+        return Answer(order, best, verdict.to_json(), (folder / "window" / "cut.dxf").read_bytes())
     finally:
         services.close()
 
@@ -79,7 +79,7 @@ def of_command_line(capsys: pytest.CaptureFixture[str], target: str, material: s
     wish += () if material is None else ("--material", material)
     assert main(["design", target, *wish, "--out", str(folder / "line"), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    again = folder / "line" / "again.dxf"
+    again = folder / "again" / "cut.dxf"
     assert main(["export", str(folder / "line" / "design.kiri"), "--out", str(again), "--json"]) == 0
     exported = json.loads(capsys.readouterr().out)
     # What design writes is what export writes of its project, and has the same verdict.
@@ -98,7 +98,7 @@ def of_command_line(capsys: pytest.CaptureFixture[str], target: str, material: s
 
 def of_python(target: str, material: str | None, folder: Path) -> Answer:
     designs = ks.design(target, grid=GRID, k=DESIGNS, seed=SEED, material=material)
-    exported = designs.best.export(folder / "python.dxf")
+    exported = designs.best.export(folder / "python" / "cut.dxf")
     assert exported.verdict is not None
     order = tuple(one.candidate.index for one in designs)
     return Answer(order, designs.best.ratios.tolist(), exported.verdict.to_json(), exported.path.read_bytes())
