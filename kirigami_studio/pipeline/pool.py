@@ -27,7 +27,19 @@ import kirigami_studio
 from kirigami_studio.foundation.log import topic
 from kirigami_studio.foundation.processes import by_itself
 from kirigami_studio.foundation.words import language
-from kirigami_studio.pipeline.worker import WORKER_FLAG, Alive, Assignment, Done, Failed, Ready, Report, Stop, Work
+from kirigami_studio.pipeline.worker import (
+    WORKER_FLAG,
+    Alive,
+    Assignment,
+    Done,
+    Failed,
+    Import,
+    Ready,
+    Report,
+    Stop,
+    Work,
+    packed,
+)
 
 log: logging.Logger = topic("pipeline")
 
@@ -83,12 +95,12 @@ class PolishingWorker:
     def alive(self) -> bool:
         return self.process.poll() is None
 
-    def send(self, message: Assignment | Stop) -> bool:
-        """Write a message; False when the worker is gone."""
-        assignments = _open(self.process.stdin)
+    def send(self, message: bytes) -> bool:
+        """Write a packed message; False when the worker is gone."""
+        messages = _open(self.process.stdin)
         try:
-            assignments.write(pickle.dumps(message))
-            assignments.flush()
+            messages.write(message)
+            messages.flush()
         except (OSError, ValueError):
             return False
         return True
@@ -174,6 +186,17 @@ class Pool:
                 except OSError as error:
                     self._give_up(f"worker processes cannot be started: {error}")
 
+    def prepare(self, module: str) -> None:
+        """Have workers that are ready import what their next work needs."""
+        if not self.ready or not self._taken.acquire(blocking=False):
+            return
+        try:
+            for worker in self.workers:
+                if worker.ready:
+                    worker.send(packed(Import(module)))
+        finally:
+            self._taken.release()
+
     def answers(self, works: Sequence[tuple[int, Work]], wait: float) -> Generator[tuple[int, Any] | None]:
         """Hand out work (number, work) in order and yield answers as they come: None once the first is given, and
         every ``wait`` seconds without an answer.
@@ -225,7 +248,7 @@ class Pool:
         self._winding_down = True
         for worker in self.workers:
             if worker.assignment is not None:
-                worker.send(Stop(self._batch))
+                worker.send(packed(Stop(self._batch)))
 
     def close(self) -> None:
         """End all workers."""
@@ -243,10 +266,11 @@ class Pool:
                 if not waiting or self._winding_down or worker.assignment is not None:
                     continue
                 following = Assignment(batch, *waiting[0], language())
-                if worker.ready or (not some_ready and len(pickle.dumps(following)) <= PIPE_HOLDS):
+                message = packed(following) if worker.ready or not some_ready else b""
+                if worker.ready or 0 < len(message) <= PIPE_HOLDS:
                     waiting.popleft()
                     worker.assignment = following
-                    worker.send(following)  # a dead one is noticed by its listener
+                    worker.send(message)  # a dead one is noticed by its listener
             if not begun:
                 begun = True
                 yield None

@@ -1,6 +1,7 @@
 """The worker process: takes assignments on standard input, reports on standard output, ends when its input ends.
 
-Messages both ways are pickled one after the other.
+Messages both ways are pickled one after the other; those to the worker twice, so that it has read all of one before it
+imports what is in it, and the program need not wait for that.
 
 A process of its own and not ``multiprocessing``: nothing is imported again from the program that starts it, so scripts
 without a guard, the window, frozen programs and machines without shared semaphores are all the same to it; and when the
@@ -15,6 +16,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from queue import SimpleQueue
@@ -43,6 +45,13 @@ class Assignment:
     number: int
     work: Work
     language: str  #: in which notes name their facts: the window may have another one than the environment
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """Import a module that work to come needs."""
+
+    module: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +94,11 @@ ALIVE_EVERY = 0.5
 WORKER_FLAG = "--worker"
 
 
+def packed(message: Assignment | Import | Stop) -> bytes:
+    """The bytes by which a worker gets a message."""
+    return pickle.dumps(pickle.dumps(message))
+
+
 def serve() -> int:
     """Work until the input ends."""
     collect_seldom()
@@ -98,9 +112,13 @@ def serve() -> int:
     answers.send(Ready())
     threading.Thread(target=answers.show_life, name="signs of life", daemon=True).start()
     while True:
-        assignment = inbox.assignments.get()
+        message = inbox.messages.get()
+        if isinstance(message, Import):
+            with suppress(ImportError):  # the work itself will say so
+                import_module(message.module)
+            continue
         answers.working.set()
-        report = _carried_out(assignment, inbox)
+        report = _carried_out(message, inbox)
         answers.working.clear()
         answers.send(report)
 
@@ -109,20 +127,22 @@ class _Inbox:
     """Assignments in turn, and which of them are to stop."""
 
     def __init__(self, source: BinaryIO) -> None:
-        self.assignments: SimpleQueue[Assignment] = SimpleQueue()
+        self.messages: SimpleQueue[Assignment | Import] = SimpleQueue()
         self.stopped_batch = -1
         self._source = source
 
     def listen(self) -> None:
         while True:
             try:
-                message = pickle.load(self._source)
+                message = pickle.loads(pickle.load(self._source))
             except (EOFError, OSError):
                 os._exit(0)  # nobody waits for the answer any more
+            except Exception:
+                os._exit(1)  # what is not there to be imported: the program does it itself, at once
             if isinstance(message, Stop):
                 self.stopped_batch = max(self.stopped_batch, message.batch)
             else:
-                self.assignments.put(message)
+                self.messages.put(message)
 
 
 def _carried_out(assignment: Assignment, inbox: _Inbox) -> Report:

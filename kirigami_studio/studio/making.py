@@ -86,6 +86,8 @@ ANIMATION = ".gif"
 NO_BOARD = ("backed.cuts_merge", "printed.no_tiles")
 #: Kinds of files that hold tiles to print.
 SOLIDS = (".3mf", ".obj", ".stl")
+#: What writes the files of pieces.
+WRITING = "kirigami_studio.export.assembly_files"
 #: Plans that are kept: a design that is chosen again, or exported, has its cuts at once.
 MOST_PLANS = 16
 #: Designs that are estimated between two reports.
@@ -572,6 +574,7 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
     ExportError
         An unwritable place, a kind of file that pieces have none of, or one that did not pass its own re-reading.
     """
+    from kirigami_studio.pipeline.pool import shared_pool
     from kirigami_studio.studio.verdict import judge_assembled
 
     kind = output.path.suffix.lower()
@@ -581,6 +584,7 @@ def written_pieces(request: CutRequest, output: Output, picture_phi: float | Non
         place = export(replace(picture_job(request), picture_phi=picture_phi), output.path)
         made = pieces_of(request)
         return ExportedFiles(place, None, verdict=made.verdict, files=(place,), pieces=made)
+    shared_pool().prepare(WRITING)
     pieces = pieces_of(request)
 
     def judge(verifications: Sequence[Verification]) -> Verdict:

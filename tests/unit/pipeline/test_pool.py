@@ -28,7 +28,7 @@ from kirigami_studio.pipeline.preview import preview
 from kirigami_studio.pipeline.request import Request
 from kirigami_studio.pipeline.run import Watch, answers, gains, grid_choice
 from kirigami_studio.pipeline.tasks import PolishTask, PolishTogether, Task, TaskResult, scored
-from kirigami_studio.pipeline.worker import Alive, Assignment, Done, Ready
+from kirigami_studio.pipeline.worker import Alive, Assignment, Done, Ready, packed
 from tests.refusals import refused
 
 COUNT = 6
@@ -197,7 +197,7 @@ def test_that_a_worker_says_that_it_lives_while_it_works(request_for_heart: Requ
     (candidate,) = scored(large, [Sheet(RatioField.from_log10(draw.uniform(-0.4, 0.4, large.grid)))], 0)
     with subprocess.Popen(worker_command(), stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdin is not None and process.stdout is not None
-        process.stdin.write(pickle.dumps(Assignment(1, 0, partial(PolishTask(candidate, 30).carry_out, large), "en")))
+        process.stdin.write(packed(Assignment(1, 0, partial(PolishTask(candidate, 30).carry_out, large), "en")))
         process.stdin.flush()
         reports = [pickle.load(process.stdout)]
         while not isinstance(reports[-1], Done):
@@ -282,6 +282,69 @@ def test_that_workers_do_any_work_beside_this_process(pool: Pool, request: pytes
     assert worker in [one.process.pid for one in pool.workers]
     assert (language, folder) == ("de", Path.cwd())
     assert pool.ready
+
+
+def where_imported(module: str) -> tuple[int, bool]:
+    """The process that does this work, and whether it has a module."""
+    return os.getpid(), module in sys.modules
+
+
+def test_that_workers_import_what_they_are_told_to_and_go_on_where_they_cannot(pool: Pool) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    for module in ("no_such_module_anywhere", "colorsys"):
+        pool.prepare(module)
+    with pool.beside([partial(where_imported, module) for module in ("colorsys", "antigravity")]) as answers:
+        processes, imported = zip(*answers(), strict=True)
+    assert set(processes) <= {one.process.pid for one in pool.workers}
+    assert imported == (True, False)
+
+
+class NotInWorkers:
+    """Work that other processes cannot read."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _only_in, (os.getpid(),)
+
+
+def _only_in(process: int) -> NotInWorkers:
+    if os.getpid() != process:
+        raise ImportError
+    return NotInWorkers()
+
+
+def test_that_this_process_does_what_workers_cannot_read(pool: Pool) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    with pool.beside([partial(size_of, NotInWorkers(), b"abc")]) as answers:
+        assert answers() == [3]
+
+
+class SlowToUnpickle:
+    """Work that its process has to import something for, as it were."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _made_slowly, ()
+
+
+def _made_slowly() -> SlowToUnpickle:
+    time.sleep(0.5)
+    return SlowToUnpickle()
+
+
+def size_of(what: object, content: bytes) -> int:
+    return len(content)
+
+
+def test_that_the_program_does_not_wait_while_a_worker_unpickles(pool: Pool) -> None:
+    pool.start()
+    wait_until_ready(pool)
+    content = bytes(3_000_000)  # more than a pipe takes
+    began = time.perf_counter()
+    with pool.beside([partial(size_of, SlowToUnpickle(), content)]) as answers:
+        given = time.perf_counter() - began
+        assert answers() == [len(content)]
+    assert given < 0.5 * (time.perf_counter() - began)
 
 
 def test_that_this_process_does_what_no_worker_is_there_for() -> None:
