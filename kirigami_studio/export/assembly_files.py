@@ -302,7 +302,7 @@ def _filled(job: AssemblyJob, fresh: Path, home: Path, kinds: Sequence[str], bes
             verified.append(verification)
             by_kind[one.kind].update({piece.id: piece for piece in pieces if piece.id in moving})
 
-    with beside([partial(_all_done, works) for works in later]) as answers:
+    with beside([partial(_all_done, share) for share in later]) as answers:
         record = pieces_json(job.whole, holds=job.holds)
         write_atomically(fresh / PIECES, (json.dumps(record, separators=(",", ":")) + "\n").encode())
         write_atomically(fresh / PARTS, parts_csv(job).encode())
