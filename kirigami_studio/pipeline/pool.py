@@ -258,15 +258,16 @@ class Pool:
 
     def _served(self, waiting: deque[tuple[int, Work]], batch: int, wait: float) -> Iterator[tuple[int, Any] | None]:
         self.start(len(waiting))
+        self._on_reports()
         begun, heard_at = False, time.monotonic()
         while self.workers and (self._under_way(batch) or (waiting and not self._winding_down)):
-            # Where none is ready yet, work waits for those that start, while this process does other things.
-            some_ready = any(worker.ready for worker in self.workers)
-            for worker in self.workers:
+            # At first, and where none is ready, work waits for those that start, while this process does other things.
+            start_with_it = not (begun and any(worker.ready for worker in self.workers))
+            for worker in sorted(self.workers, key=lambda one: not one.ready):
                 if not waiting or self._winding_down or worker.assignment is not None:
                     continue
                 following = Assignment(batch, *waiting[0], language())
-                message = packed(following) if worker.ready or not some_ready else b""
+                message = packed(following) if worker.ready or start_with_it else b""
                 if worker.ready or 0 < len(message) <= PIPE_HOLDS:
                     waiting.popleft()
                     worker.assignment = following

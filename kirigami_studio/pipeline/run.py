@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, M
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import groupby, zip_longest
+from itertools import groupby, pairwise, zip_longest
 from typing import TYPE_CHECKING
 
 from kirigami_studio.evaluate.candidate import Candidate, Origin
@@ -70,7 +70,7 @@ SCORED_TOGETHER = 32
 #: takes an eighth of the time of fitting it.  Not of pinned sheets: what a sample matches says little about its pieces.
 LEAST_DRAWN = 32
 
-#: Candidates fitted one after the other and scored in one batch, which takes half of the time of one by one.
+#: Candidates fitted one after the other and scored in one batch, which takes half of the time of one by one: at most.
 FITTED_TOGETHER = 4
 
 #: Steps that every candidate gets before any gets more: designs improve early, and a short budget is shared fairly.
@@ -544,8 +544,7 @@ class _Work:
 
     def _polished(self, tasks: Sequence[PolishTask], done: int, total: int) -> Iterator[Event]:
         places = {one.index: place for place, one in enumerate(self.found)}
-        starts = range(0, len(tasks), FITTED_TOGETHER)
-        several = [PolishTogether(tuple(tasks[start : start + FITTED_TOGETHER])) for start in starts]
+        several = [PolishTogether(part) for part in shared_out(tasks, 1 if self.pool is None else self.pool.size)]
         for report in self._carried_out(several, POLISHING, done, total):
             if isinstance(report, Progress):
                 yield report
@@ -706,6 +705,13 @@ class _Work:
                     yield phase.progress(done, total)
         self.watch.check(phase.stopped, done, total)
         self.cut_short = self.cut_short or self.watch.expired()
+
+
+def shared_out(tasks: Sequence[PolishTask], workers: int) -> list[tuple[PolishTask, ...]]:
+    """Tasks in parts of :data:`FITTED_TOGETHER` at most, so that workers have as many, and as large ones."""
+    count = min(len(tasks), workers * math.ceil(len(tasks) / (workers * FITTED_TOGETHER)))
+    ends = [len(tasks) * (part + 1) // count for part in range(count)]
+    return [tuple(tasks[start:end]) for start, end in pairwise([0, *ends])]
 
 
 def needs_cover(request: Request, found: Sequence[Candidate]) -> bool:

@@ -26,7 +26,7 @@ from kirigami_studio.pipeline import auto_grid, worker
 from kirigami_studio.pipeline.pool import Pool, worker_command
 from kirigami_studio.pipeline.preview import preview
 from kirigami_studio.pipeline.request import Request
-from kirigami_studio.pipeline.run import Watch, answers, gains, grid_choice
+from kirigami_studio.pipeline.run import Watch, answers, gains, grid_choice, shared_out
 from kirigami_studio.pipeline.tasks import PolishTask, PolishTogether, Task, TaskResult, scored
 from kirigami_studio.pipeline.worker import Alive, Assignment, Done, Ready, packed
 from tests.refusals import refused
@@ -143,6 +143,36 @@ def test_that_work_waits_for_workers_that_start(
         assert dict(report for report in reports if report is not None) == expected
     finally:
         starting.close()
+
+
+def test_that_one_that_starts_gets_work_beside_one_that_is_ready(
+    request_for_heart: Request, tasks: list[Task], expected: dict[int, TaskResult]
+) -> None:
+    starting = Pool(2)
+    try:
+        starting.start(1)
+        wait_until_ready(starting)
+        starting.start()
+        starting.workers.reverse()  # whichever was started first, the ready one comes first
+        reports = answers(starting, request_for_heart, tasks[:2], watch())
+        assert next(reports) is None
+        assert [(one.ready, one.assignment and one.assignment.number) for one in starting.workers] == [
+            (False, 1),
+            (True, 0),
+        ]
+        assert dict(report for report in reports if report is not None) == {place: expected[place] for place in (0, 1)}
+    finally:
+        starting.close()
+
+
+@pytest.mark.parametrize(
+    ("count", "workers", "sizes"),
+    [(0, 2, []), (1, 2, [1]), (4, 1, [4]), (4, 2, [2, 2]), (6, 2, [3, 3]), (10, 2, [2, 3, 2, 3]), (9, 1, [3, 3, 3])],
+)
+def test_that_workers_get_parts_that_are_as_large(count: int, workers: int, sizes: list[int]) -> None:
+    parts = shared_out(range(count), workers)  # type: ignore[arg-type]
+    assert [len(part) for part in parts] == sizes
+    assert [one for part in parts for one in part] == list(range(count))
 
 
 def test_that_nobody_waits_for_a_worker_that_starts_to_read(
