@@ -14,10 +14,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 import shapely
+from scipy.linalg import qr
 
 from kirigami_studio.evaluate.boundary import as_plane, as_points
 from kirigami_studio.evaluate.kept_panels import PanelTable, all_panels
@@ -106,14 +108,12 @@ class LayerMotion:
         """
         if not nodes:
             return self
-        pins, conditions = _conditions(self)
-        parts, sizes, _ = np.linalg.svd(conditions, full_matrices=False)
-        parts = parts[:, sizes > sizes.max(initial=0.0) * max(conditions.shape) * np.finfo(np.float64).eps]
-        if 3 * len(self.layer) - 3 - parts.shape[1] != 1:
+        pins, held = _held(self)
+        if freedom(self) != 1:
             return self
         # Conditions can go if others imply them: if their part of this projection, onto what holds the sheet no more
         # than others do, is not singular.
-        spare = np.eye(len(conditions)) - parts @ parts.T
+        spare = np.eye(len(held)) - held @ held.T
         left_out = []
         hinged = set(pins.tolist())
         for node in (one for one in nodes if one in hinged):
@@ -180,7 +180,17 @@ class LayerMotion:
 
 def freedom(motion: LayerMotion) -> int:
     """Count the small motions of a half open sheet on its pins, beside those of the whole."""
-    return 3 * len(motion.layer) - 3 - int(np.linalg.matrix_rank(_conditions(motion)[1]))
+    return 3 * len(motion.layer) - 3 - int(_held(motion)[1].shape[1])
+
+
+@lru_cache(maxsize=2)  # of one motion, several sets of pins are tried
+def _held(motion: LayerMotion) -> tuple[IntArray, FloatArray]:
+    """Nodes (N,) with pins, and an orthonormal basis (2 N, 3 P - 3 - freedom) of what their conditions hold."""
+    pins, conditions = _conditions(motion)
+    basis, sizes, _ = qr(conditions, mode="economic", pivoting=True)
+    sizes = np.abs(np.diag(sizes))
+    least = sizes.max(initial=0.0) * max(conditions.shape) * np.finfo(np.float64).eps
+    return pins, np.asarray(basis[:, : np.count_nonzero(sizes > least)], dtype=np.float64)
 
 
 def _conditions(motion: LayerMotion) -> tuple[IntArray, FloatArray]:

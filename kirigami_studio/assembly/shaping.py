@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -190,7 +190,8 @@ class Shaping:
         self._straps = _Straps.of(motion, options).clear_of_walls(motion, options, mover, seen)
         radii = [0.5 * (0.5 * options.ear_mm + options.keep_mm), options.keep_mm]
         while True:
-            keys = [self._notching(index, movers) for index, movers in enumerate(passing)]
+            straps = self._straps.by_ear()
+            keys = [self._notching(index, movers, straps) for index, movers in enumerate(passing)]
             fresh = [index for index, key in enumerate(keys) if key not in known]
             known |= zip([keys[index] for index in fresh], self._notched(fresh, blanks, passing), strict=True)
             notched = [known[key] for key in keys]
@@ -213,13 +214,12 @@ class Shaping:
             self._find_weak(index, self._most_pinned(index, one.shape) if one.held is None else one.held)
             self.bodies[index] = self._held_narrowly(index, one.shape) if one.held is None else one.held
 
-    def _notching(self, index: int, movers: IntArray) -> _Notching:
+    def _notching(self, index: int, movers: IntArray, straps: Mapping[int, bytes]) -> _Notching:
         """Key of the notches of a panel: its own ears, those that pass it, and their straps."""
         radius = self.ear_radius.ravel()
         own = np.flatnonzero(self.motion.hinged[index]) + 4 * index
-        straps = self._straps.centre[np.isin(self._straps.ear, np.concatenate([own, movers]))]
         ears = own.tobytes(), radius[own].tobytes(), movers.tobytes(), radius[movers].tobytes()
-        return index, *ears, straps.tobytes()
+        return index, *ears, b"".join(straps.get(ear, b"") for ear in (*own.tolist(), *movers.tolist()))
 
     def _notched(self, fresh: Sequence[int], blanks: GeometryArray, passing: Sequence[IntArray]) -> list[_Notched]:
         """Cut the notches of some panels; ``passing`` are the ears that may touch each."""
@@ -515,6 +515,12 @@ class _Straps:
         least = self.radius + options.clearance_mm + STRAP_SCALLOP + 0.5 * options.pin_mm + options.asked_wall_mm
         near = number[(apart < least) & motion.hinged[passed].ravel()]
         return self.some(~np.isin(np.arange(len(self.ear)), near))
+
+    def by_ear(self) -> dict[int, bytes]:
+        """Centres of the discs of each ear that has some."""
+        first = np.flatnonzero(np.diff(self.ear, prepend=-1))  # those of one ear follow each other
+        centres = np.split(self.centre, first[1:])
+        return {ear: one.tobytes() for ear, one in zip(self.ear[first].tolist(), centres, strict=False)}
 
     def some(self, chosen: BoolArray) -> _Straps:
         """Those discs that are chosen."""
