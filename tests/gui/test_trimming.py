@@ -196,7 +196,7 @@ def test_that_widths_that_the_trim_has_no_room_for_are_refused_with_a_way_out(
     # With 4.5 mm an edge cut is 0.16 mm too short once it is trimmed again: only a wider sheet helps then.
     trimmed.services.fabrication.change(connector_mm=4.4)
     until(lambda: not trimmed.fabrication.export.isEnabled())
-    assert "trim again" in trimmed.fabrication.warnings.text() and trimmed.fabrication.summary.text() == ""
+    assert "trimming again" in trimmed.fabrication.warnings.text() and trimmed.fabrication.summary.text() == ""
     qtbot.mouseClick(trimmed.stage.trim, LEFT)
     qtbot.mouseClick(trimmed.stage.trim, LEFT)
     until(lambda: not trimmed.services.chosen.trimming.busy)

@@ -60,7 +60,7 @@ NOT_KNOWN = {
 }
 KEEP = {Machine: mark("Add to my machines"), Material: mark("Add to my materials")}
 ADDED = {Machine: mark("Added {name} to your machines."), Material: mark("Added {name} to your materials.")}
-TRIM_AGAIN = mark("Or untrim and trim again to make room for these widths.")
+TRIM_AGAIN = mark("Untrimming and trimming again may also make room for these widths.")
 
 
 class CutPlanner(QObject):
