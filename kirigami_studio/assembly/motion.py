@@ -185,7 +185,10 @@ def freedom(motion: LayerMotion) -> int:
 
 @lru_cache(maxsize=2)  # of one motion, several sets of pins are tried
 def _held(motion: LayerMotion) -> tuple[IntArray, FloatArray]:
-    """Nodes (N,) with pins, and an orthonormal basis (2 N, 3 P - 3 - freedom) of what their conditions hold."""
+    """Nodes (N,) with pins, and an orthonormal basis of what their conditions hold.
+
+    The basis has 2 N rows and 3 P - 3 columns less the freedom.
+    """
     pins, conditions = _conditions(motion)
     basis, sizes, _ = qr(conditions, mode="economic", pivoting=True)
     sizes = np.abs(np.diag(sizes))

@@ -61,6 +61,7 @@ from kirigami_studio.settings.fabrication import (
 from kirigami_studio.settings.layers import note_before_run
 from kirigami_studio.studio.as_cut import AsCut, jam_json
 from kirigami_studio.studio.designing import (
+    KnownAsCut,
     completed,
     document_of,
     first_of_families,
@@ -255,7 +256,8 @@ def designed(job: DesignJob, line: ProgressLine, pool: Pool | None = None) -> De
         made = planned(request)
     except FabricationError as error:
         return DesignOutcome(result, request, refused(error), notes=notes)
-    request = replace(request, as_cut=closed(request, made))
+    known = KnownAsCut.of(result, job.fabrication).simulation(request.candidate, request.settings)
+    request = replace(request, as_cut=closed(replace(request, as_cut=known), made))
     result = replace(result, as_cut={**result.as_cut, request.candidate: request.as_cut})
     return DesignOutcome(result, request, judged(request, made, request.as_cut), notes=notes)
 

@@ -708,7 +708,10 @@ class _Work:
 
 
 def shared_out(tasks: Sequence[PolishTask], workers: int) -> list[tuple[PolishTask, ...]]:
-    """Tasks in parts of :data:`FITTED_TOGETHER` at most, so that workers have as many, and as large ones."""
+    """Divide tasks into parts for workers, as many and as large for each.
+
+    None has more than :data:`FITTED_TOGETHER`.
+    """
     count = min(len(tasks), workers * math.ceil(len(tasks) / (workers * FITTED_TOGETHER)))
     ends = [len(tasks) * (part + 1) // count for part in range(count)]
     return [tuple(tasks[start:end]) for start, end in pairwise([0, *ends])]

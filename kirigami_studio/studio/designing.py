@@ -144,6 +144,11 @@ class KnownAsCut:
         }
         return cls(any_sheet(cut), result.jam_phi, result.refusals, result.losses, found)
 
+    def simulation(self, candidate: Candidate, cut: FabricationSettings) -> AsCut | None:
+        """Look up how a design does as cut; None unless a close look has closed it in this size."""
+        same = cut.opened_mm is None and one_sheet(cut) == self.sheet
+        return self.simulated.get(candidate) if same else None
+
 
 @dataclass(frozen=True, slots=True)
 class StartChosen:

@@ -13,6 +13,7 @@ import pytest
 
 from kirigami_studio.cli import main
 from kirigami_studio.fabricate.checks import check_plan
+from kirigami_studio.fabricate.strain import StrainFigure
 from kirigami_studio.foundation.errors import FabricationError
 from kirigami_studio.pipeline import run as pipeline
 from kirigami_studio.pipeline.events import Event, Finished, Result
@@ -20,8 +21,10 @@ from kirigami_studio.pipeline.request import Request
 from kirigami_studio.project.document import Document
 from kirigami_studio.project.store import load
 from kirigami_studio.settings.fabrication import with_choices
+from kirigami_studio.studio import verdict
+from kirigami_studio.studio.as_cut import AsCut, Outcome
 from kirigami_studio.studio.cutting import plan_of, refuse_errors
-from kirigami_studio.studio.designing import why_untrimmed
+from kirigami_studio.studio.designing import KnownAsCut, why_untrimmed
 from kirigami_studio.studio.making import CutRequest, planned, with_cuttable_chosen
 
 CASES = Path(__file__).parents[1] / "data" / "making"
@@ -73,6 +76,27 @@ def test_that_everything_but_the_cut_file_is_written_where_nothing_can_be_cut(
     names = sorted(path.name for path in tmp_path.iterdir())
     assert names == ["candidates.json", "design.kiri", "layout.svg", "preview.png"]
     assert load(tmp_path / "design.kiri").candidates
+
+
+def test_that_a_sheet_that_its_run_has_closed_is_not_closed_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def closed_again(*given: object) -> None:
+        raise AssertionError("closed again")
+
+    monkeypatch.setattr(verdict, "closed_as_cut", closed_again)
+    words = ["design", "heart", "--k", "1", "--grid", "6x6", "--no-polish", "--material", "film-uv"]
+    assert main([*words, "--out", str(tmp_path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["jam_from"] == "simulation"
+    # Of another width that is not known, nor of sheets that all open to one size.
+    document = load(tmp_path / "design.kiri")
+    assert document.candidate is not None and document.target is not None
+    found = AsCut(0.0, 0.0, Outcome.CLOSES, 0.0, 0.01, StrainFigure.IN_PLANE)
+    result = Result(Request(document.target, None), (document.candidate,), 0, 0.0, as_cut={document.candidate: found})
+    known = KnownAsCut.of(result, document.fabrication)
+    assert known.simulation(document.candidate, replace(document.fabrication, markers=False)) is found
+    for other in ({"width_mm": 90.0}, {"opened_mm": document.fabrication.width_mm}, {"kerf_mm": 0.3}):
+        assert known.simulation(document.candidate, replace(document.fabrication, **other)) is None
 
 
 def test_that_a_design_is_written_untrimmed_where_none_could_be_trimmed(
