@@ -186,6 +186,7 @@ def trimmed(
     locked: BoolArray | None = None,
     least_panel: float = 0.0,
     room: Room = NO_ROOM,
+    start_weight: float = 1.0,
 ) -> Trimmed:
     """Fit a candidate so that it covers the target, and trim its edge panels.
 
@@ -203,13 +204,17 @@ def trimmed(
         Panel edges and necks before trimming, see :func:`kirigami_studio.polish.levenberg.polish`.
     room : Room
         For the connectors.
+    start_weight : float, > 0
+        How firmly a round start is held.
 
     Raises
     ------
     KirigamiError
         The candidate's outline crosses itself.
     """
-    cover = _cover(candidate, target, keep, cancel, locked, least_panel=least_panel, room=room)
+    cover = _cover(
+        candidate, target, keep, cancel, locked, least_panel=least_panel, room=room, start_weight=start_weight
+    )
     return Trimmed(replace(candidate, trim=cover.trim), cover.fit.evaluations + 1)
 
 
@@ -225,12 +230,13 @@ def covered(
     least_gap: float = 0.0,
     *,
     notched: bool = True,
+    start_weight: float = 1.0,
 ) -> Trimmed:
     """Make a cover of a candidate: a sheet over the target of which parts are cut away.
 
     Parameters
     ----------
-    candidate, target, keep, cancel, locked, least_panel, room
+    candidate, target, keep, cancel, locked, least_panel, room, start_weight
         As for :func:`trimmed`.
     even : float
         Weight of even panels in whole sheets; a cover that is cut out of one sheet is fitted with
@@ -262,6 +268,7 @@ def covered(
         afresh=True,
         room=room,
         least_gap=least_gap,
+        start_weight=start_weight,
     )
     with one_blas_thread():
         deployment = deploy(cover.trim.sheet)
@@ -284,6 +291,7 @@ def _cover(
     afresh: bool = False,
     room: Room,
     least_gap: float = 0.0,
+    start_weight: float,
 ) -> Cover:
     """Fit a candidate's sheet so that it covers the target, within its own rim and symmetry."""
     sheet, score = candidate.sheet, candidate.score
@@ -307,6 +315,7 @@ def _cover(
             afresh=afresh,
             # Locked voids keep their ratios, whatever room there is.
             room=partial((room if free else NO_ROOM).made, cancel=cancel),
+            start_weight=start_weight,
         )
 
 
@@ -355,7 +364,7 @@ def refitted(
     span_mm : float
         See :class:`Room`.
     start_weight : float, > 0
-        How firmly a round start is held, except by covers.
+        How firmly a round start is held.
 
     Raises
     ------
@@ -373,7 +382,19 @@ def refitted(
     ranking, room = Ranking(regular, width_mm, least_feature_mm, least_gap_mm), Room(width_mm, span_mm)
     if candidate.origin is Origin.COVERED:
         even, notched = even_weight(regular), candidate.trim is None or candidate.trim.deep
-        made = covered(candidate, target, keep(), cancel, table, least, even, room, gap, notched=notched)
+        made = covered(
+            candidate,
+            target,
+            keep(),
+            cancel,
+            table,
+            least,
+            even,
+            room,
+            gap,
+            notched=notched,
+            start_weight=start_weight,
+        )
         cover = made.candidate
         _stop_if(cancel)
         return Refit(cover, ranking.worth_as_made(cover) > ranking.worth_as_made(candidate))
@@ -407,7 +428,7 @@ def refitted(
     if candidate.trim is None:
         return Refit(fitted, better)
     try:
-        again = trimmed(fitted, target, keep(), cancel, table, least, room)
+        again = trimmed(fitted, target, keep(), cancel, table, least, room, start_weight)
     except KirigamiError as problem:
         return Refit(fitted, better, problem)
     _stop_if(cancel)

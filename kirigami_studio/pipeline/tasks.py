@@ -237,7 +237,8 @@ class TrimTask:
         """Trim, unless the design crosses itself."""
         try:
             room = Room(request.width_mm, request.span_mm)
-            made = trimmed(self.candidate, request.target, request.keep, stopped, None, request.kept_when_trimmed, room)
+            least, weight = request.kept_when_trimmed, request.start.weight
+            made = trimmed(self.candidate, request.target, request.keep, stopped, None, least, room, weight)
         except KirigamiError:
             return TaskResult(None, 1)
         return TaskResult(made.candidate, made.evaluations)
@@ -260,7 +261,17 @@ class CoverTask:
         try:
             room = Room(request.width_mm, request.span_mm)
             made = covered(
-                one, request.target, keep, stopped, None, least, even, room, request.least_gap, notched=self.notched
+                one,
+                request.target,
+                keep,
+                stopped,
+                None,
+                least,
+                even,
+                room,
+                request.least_gap,
+                notched=self.notched,
+                start_weight=request.start.weight,
             )
         except KirigamiError:
             return TaskResult(None, 1)

@@ -81,6 +81,7 @@ def fit_cover(
     notched: bool = False,
     afresh: bool = False,
     room: Callable[[Deployment], Deployment] = lambda deployment: deployment,
+    start_weight: float = 1.0,
 ) -> Cover:
     """Fit a polished sheet so that its trimmed silhouette matches best.
 
@@ -99,7 +100,7 @@ def fit_cover(
         Asked before every step; the best so far is returned.
     locked : (m, n) bool, optional
         Voids whose ratio stays exactly as it is.
-    free_rim, symmetry, even, least_panel, least_gap
+    free_rim, symmetry, even, least_panel, least_gap, start_weight
         As for :func:`polish`.
     notched : bool
         Whether notches that no closed sheet shows are cut out in any case.
@@ -153,6 +154,7 @@ def fit_cover(
         symmetry=symmetry,
         excess=EXCESS,
         locked=locked,
+        start_weight=start_weight,
     )
     fit = replace(fit, pose=place.compose(fit.pose))
     if fit.steps and path_contact(deploy(fit.sheet), phi) is None and not cancel():

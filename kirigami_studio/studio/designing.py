@@ -766,7 +766,9 @@ def fitting_again(
         yield KnownAsCut.of((yield from ranked_as_cut(found, cut, (), cancel)), cut)
 
 
-def trimming(candidate: Candidate, target: Outline, settings: FabricationSettings, cancel: Cancel) -> Iterator[Decoded]:
+def trimming(
+    candidate: Candidate, target: Outline, wanted: DesignSettings, settings: FabricationSettings, cancel: Cancel
+) -> Iterator[Decoded]:
     """Fit a candidate so that it covers the target, and trim it, with room for the connectors at its hinges."""
     from kirigami_studio.pipeline.redesign import Room, trimmed
     from kirigami_studio.polish.panel_size import least_in_cells
@@ -774,7 +776,15 @@ def trimming(candidate: Candidate, target: Outline, settings: FabricationSetting
     least_mm, _ = sizes_of(settings)
     least = least_in_cells(least_mm, settings.width_mm, candidate.score.evenness.width)
     room = Room(settings.width_mm, _span_of(settings))
-    found = trimmed(candidate, target, keep_for(candidate, target, settings), cancel, least_panel=least, room=room)
+    found = trimmed(
+        candidate,
+        target,
+        keep_for(candidate, target, settings),
+        cancel,
+        least_panel=least,
+        room=room,
+        start_weight=wanted.start.weight,
+    )
     if cancel():
         raise Cancelled("trim.stopped")
     yield decoded(found.candidate)

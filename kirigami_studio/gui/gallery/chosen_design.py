@@ -120,7 +120,7 @@ class TrimSwitch(ChosenDesignJob[Decoded]):
         document = self._session.document
         if document.target is None:
             return
-        steps = partial(trimming, candidate, document.target, document.fabrication)
+        steps = partial(trimming, candidate, document.target, document.settings, document.fabrication)
         self.begin(tr("trimming the design"), candidate, steps)
         self._session.set_status(tr("Trimming {name} …", name=chosen_name(document)))
 

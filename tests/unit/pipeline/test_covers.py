@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from unittest.mock import Mock
 
 import pytest
+import shapely
 from shapely.geometry import Polygon
 
 from kirigami_studio.cli.design import candidates_json, summary
 from kirigami_studio.evaluate.candidate import Candidate, Family, Origin
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import KirigamiError
+from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.lattice.symmetry import Symmetry
 from kirigami_studio.outlines.outline import Outline
 from kirigami_studio.outlines.silhouettes import load
@@ -31,6 +34,7 @@ from kirigami_studio.pipeline.run import (
     needs_cover,
     varied_first,
 )
+from kirigami_studio.pipeline.tasks import CoverTask, PolishTask, TrimTask, scored
 from kirigami_studio.pipeline.variety import look_alikes
 from kirigami_studio.project.document import Document
 from kirigami_studio.settings.fabrication import FabricationSettings
@@ -214,3 +218,19 @@ def test_that_the_first_of_each_symmetry_is_covered_before_others() -> None:
     kept = (None, None, Symmetry.HALF_TURN, Symmetry.HALF_TURN, Symmetry.TWO_MIRRORS)
     designs = [Mock(symmetry=symmetry) for symmetry in kept]
     assert varied_first(designs) == [designs[place] for place in (0, 2, 4, 1, 3)]
+
+
+@pytest.mark.parametrize("task", [CoverTask, TrimTask])
+def test_that_a_round_start_is_held_as_firmly_as_asked_for(task: type[CoverTask | TrimTask]) -> None:
+    """Chords between mouths take more off the disk where it may give way."""
+    disk, lost = start_shape("circle"), []
+    request = Request(load("puzzle"), grid=(6, 6), start=disk)
+    begun = PolishTask(scored(request, [request.uniform], 0)[0], 4).carry_out(request, lambda: False).candidate
+    assert begun is not None
+    for weight in (1.0, 0.01):
+        asked = replace(request, start=replace(disk, weight=weight))
+        made = task(begun).carry_out(asked, lambda: False).candidate
+        assert made is not None and made.trim is not None
+        flat = shapely.Polygon(deploy(made.trim.sheet).outline(math.pi))
+        lost.append(1.0 - flat.area / shapely.minimum_bounding_circle(flat).area)
+    assert lost[0] < 0.98 * lost[1]
