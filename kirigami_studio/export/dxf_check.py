@@ -39,7 +39,7 @@ from kirigami_studio.export.provenance import AROUND, BOX, PLACE, PROGRAM, SHEET
 from kirigami_studio.export.sheet_bed import place_of_text
 from kirigami_studio.export.svg_reading import LARGEST_FILE, facts_of_svg, is_svg, read_with_xml
 from kirigami_studio.fabricate.checks import OVERLAP_TOLERANCE_MM, WIDTH_TOLERANCE_MM, place_of
-from kirigami_studio.fabricate.copies import alike, copy_numbers
+from kirigami_studio.fabricate.copies import are_apart, copy_numbers
 from kirigami_studio.fabricate.cut_plan import LARGEST_SHEET_MM, SMALLEST_SHEET_MM, Layer
 from kirigami_studio.fabricate.engraving import nearest_cut
 from kirigami_studio.fabricate.findings import Problem, Severity
@@ -287,9 +287,22 @@ def _one_of_copies(content: DxfContent, kerf: float, problems: list[Problem]) ->
     sheets = [[content.paths[at] for at in np.flatnonzero(numbers == copy).tolist()] for copy in range(copies)]
     clouds = [np.concatenate([path.points for path in sheet] or [np.zeros((1, 2))]) for sheet in sheets]
     # Not the other way round, so that a gap that is no number counts as a fault.
-    if not (gap > kerf and alike(clouds, gap - kerf, 2.0 * SAME_POINT_MM)):
+    apart = gap > kerf and are_apart(clouds, gap - kerf, 2.0 * SAME_POINT_MM)
+    if not (apart and _are_alike(sheets)):
         problems.append(Problem.error("cut_file.copies_differ", promised=said))
     return replace(content, paths=sheets[0]), copies
+
+
+def _are_alike(sheets: Sequence[Sequence[FilePath]]) -> bool:
+    """Whether copies have the same lines but for their place.
+
+    Chords of one arc may begin at other points of it.
+    """
+    if len({len(sheet) for sheet in sheets}) > 1:
+        return False
+    laid = [[LineString(path.points - sheet[0].points[0]) for path in sheet] for sheet in sheets]
+    apart = shapely.hausdorff_distance(np.array(laid[1:], dtype=object), np.array(laid[:1], dtype=object))
+    return bool(np.max(apart, initial=0.0) <= FLATTEN_MM + 2.0 * SAME_POINT_MM)
 
 
 def _read(path: Path) -> DxfContent:

@@ -13,7 +13,8 @@ import pytest
 import shapely
 from shapely.geometry import LineString, Polygon
 
-from kirigami_studio.export.dxf_check import check_file
+from kirigami_studio.export.dxf_check import _are_alike, check_file
+from kirigami_studio.export.dxf_reading import FilePath
 from kirigami_studio.export.exporter import ExportJob
 from kirigami_studio.export.lightburn import layer_lengths
 from kirigami_studio.export.paper import tile
@@ -144,3 +145,16 @@ def test_that_a_copy_that_was_moved_or_bent_is_found(design: Deployment, tmp_pat
         bad = {finding.code for finding in found.findings if not finding.ok}
         assert "verify.copies_differ" in bad, name
         assert "cut_file.copies_differ" in {problem.code for problem in check_file(spoilt).problems}, name
+
+
+@pytest.mark.parametrize(("shift_mm", "alike"), [(0.0, True), (0.003, False)])
+def test_that_chords_of_one_arc_may_begin_at_other_points_of_it(shift_mm: float, alike: bool) -> None:
+    """A reader of a file with tabs found points 0.0022 mm apart along the arc of an edge slit of two copies."""
+
+    def sheet(place: float, begin: float, shift: float) -> list[FilePath]:
+        turns = np.concatenate([[0.0], np.linspace(begin, 0.95 + begin, 20), [1.0]])
+        arc = 0.3 * np.column_stack([np.cos(turns), np.sin(turns)]) + [1.0 + shift, 0.0]
+        lines = [np.array([[0.0, 0.0], [1.0, 0.0]]), arc]
+        return [FilePath(line + np.array([place, 0.0]), "EDGE_SLITS", False) for line in lines]
+
+    assert _are_alike([sheet(0.0, 0.02, 0.0), sheet(5.0, 0.03, shift_mm)]) is alike
