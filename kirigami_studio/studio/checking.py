@@ -35,6 +35,9 @@ from kirigami_studio.settings.fabrication import (
 from kirigami_studio.studio.making import CutRequest, closed, jam_of, judged, pieces_of, planned
 from kirigami_studio.studio.verdict import RANK, Level, Verdict, judge_assembled, refused
 
+#: Settings that cut files say by the design alone that they carry.
+HELD_AND_MOVED = ("held_by", "held_when", "magnet_mm", "magnet_height_mm", "moved_by")
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Checked:
@@ -163,7 +166,7 @@ def checked(path: Path, document: Document | None = None) -> Checked:
         return _checked_sheets(report, document)
     if report.of_pieces is not None:
         return _checked_beds([report], document)[0]
-    request, unlike = _request(report.record, path, document)
+    request, unlike = _request(report.record, path, _as_carried(document, [report]))
     try:
         made = planned(request)
     except FabricationError as error:
@@ -185,7 +188,7 @@ def _checked_sheets(report: FileReport, document: Document) -> Checked:
     for sheet in report.sheets:
         design = "" if sheet.record is None else sheet.record.design
         own = next((part for part in parts if _design_of(part, design) is not None), parts[document.part])
-        request, others = _request(sheet.record, report.path, own)
+        request, others = _request(sheet.record, report.path, _as_carried(own, [report]))
         requests.append(request)
         unlike = (*unlike, *(problem for problem in others if problem not in unlike))
     try:
@@ -241,7 +244,7 @@ def _checked_backed(reports: Sequence[FileReport], document: Document) -> tuple[
     from kirigami_studio.export.assembly_files import read_bed, read_hinge_layer
     from kirigami_studio.export.pieces_read import KnownOutlines
 
-    request, unlike = _request_of_layers(reports, document)
+    request, unlike = _request_of_layers(reports, _as_carried(document, reports))
     try:
         made = planned(request)
         job = made.layers
@@ -311,7 +314,7 @@ def _checked_beds(reports: Sequence[FileReport], document: Document) -> tuple[Ch
     records = [report.of_pieces for report in reports if report.of_pieces is not None]
     if any(record.construction != Construction.PINNED.value for record in records):
         return tuple(Checked(report) for report in reports)
-    request, unlike = _request_of_pieces(records[0], document)
+    request, unlike = _request_of_pieces(records[0], _as_carried(document, reports))
     if any(_made_otherwise(record, records[0]) for record in records):
         unlike = (*unlike, Problem.error("check.beds_of_several"))
     try:
@@ -440,6 +443,15 @@ def recorded_settings(record: FileRecord, path: Path, saved: FabricationSettings
         )
     except KirigamiError as error:
         raise ExportError("cut_file.record_not_readable", name=error.code, value="") from error
+
+
+def _as_carried(document: Document, reports: Sequence[FileReport]) -> Document:
+    """The project held and moved as the design that files carry; as it is where they carry none."""
+    found = next((one for report in reports if (one := _enclosed(report.path)) is not None), None)
+    if found is None:
+        return document
+    chosen = {name: getattr(found, name) for name in HELD_AND_MOVED}
+    return replace(document, fabrication=replace(document.fabrication, **chosen))
 
 
 def _enclosed(path: Path) -> FabricationSettings | None:

@@ -5,11 +5,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from kirigami_studio.export.dxf_check import NO_CUT_FILES
+from kirigami_studio.fabricate.drive import DriveKind
+from kirigami_studio.fabricate.fastener import Fastener
+from kirigami_studio.fabricate.hold import HoldKind, HoldWhen
 from kirigami_studio.fabricate.material import Construction
 from kirigami_studio.foundation.errors import ExportError
 from kirigami_studio.studio.checking import checked
@@ -31,6 +35,20 @@ def test_that_a_check_of_every_bed_agrees_with_its_export(pinned: ExportedFiles)
 def test_that_a_check_of_every_layer_and_print_agrees_with_its_export(number: int, tmp_path: Path) -> None:
     files, told = contradictions(project_of(number), exported(project_of(number), tmp_path / "set"))
     assert told == [] and (files > 0) is (MADE_AS[number] is Construction.BACKED)
+
+
+def test_that_a_project_need_not_be_held_and_moved_as_its_pieces_are(tmp_path: Path) -> None:
+    plain = project_of(3)
+    cut = replace(plain.fabrication, held_by=HoldKind.NONE, moved_by=DriveKind.NONE)
+    held = replace(
+        cut, held_by=HoldKind.MAGNETS, held_when=HoldWhen.BOTH, moved_by=DriveKind.CRANK, fastener=Fastener.M2
+    )
+    found = exported(replace(plain, fabrication=held), tmp_path / "set")
+    assert any(path.stem == "board" for path in found.files)
+    # Projects of LightBurn do not carry their design.
+    found = replace(found, files=tuple(path for path in found.files if path.suffix != ".lbrn2"))
+    files, told = contradictions(replace(plain, fabrication=cut), found)
+    assert files > 2 and told == []
 
 
 def test_that_a_check_that_does_not_agree_is_told(pinned: ExportedFiles) -> None:

@@ -14,6 +14,7 @@ from kirigami_studio.fabricate.hold import HoldKind, HoldWhen
 from kirigami_studio.foundation.steps import never
 from kirigami_studio.lattice.deployment import deploy
 from kirigami_studio.project.document import Document
+from kirigami_studio.studio.checking import checked
 from kirigami_studio.studio.making import CutRequest, Output, exporting, planned
 from tests.square_documents import square_document
 
@@ -38,6 +39,9 @@ def test_that_marks_of_one_sheet_are_in_its_files_and_cut_nothing(
     *_, found = exporting(CutRequest.of(square, settings), Output(tmp_path / "held.dxf"), True, never)
     assert found.ok and found.verdict is not None and found.verdict.level is plain.verdict.level
     assert main(["check", str(tmp_path / "held.dxf")]) == 0
+    # The file carries how it is held; the project is not.
+    again = checked(tmp_path / "held.dxf", square).verdict
+    assert again is not None and again.level is found.verdict.level, again
 
 
 def test_that_both_marks_of_a_place_meet_when_the_sheet_is_open(square: Document) -> None:
