@@ -90,7 +90,7 @@ from kirigami_studio.studio.making import (
 from kirigami_studio.studio.part_sheets import exporting_parts, folder_name, part_names, placed_layouts, worst_of
 from kirigami_studio.studio.targets import PieceRead
 from kirigami_studio.studio.two_states import shown_match
-from kirigami_studio.studio.verdict import RANK, Verdict, refused
+from kirigami_studio.studio.verdict import RANK, Level, Verdict, refused
 
 #: Files of a design, by their roles.
 FILES = {
@@ -679,12 +679,15 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
                 name=target.name,
             )
         )
-    (reason, *_) = result.ranking.reasons(result.candidates)
-    say(f"{target.name}: {reason.text}")
+    crowded = not result.ranking.cuttable(result.best)
+    # Pieces may do where their sheet would not.
+    if not crowded or verdict.level is Level.FAILS:
+        (reason, *_) = result.ranking.reasons(result.candidates)
+        say(f"{target.name}: {reason.text}")
     limit = limit_of_run(result)
     if limit is not None:
         say(f"{target.name}: {limit.text}")
-    if trim is not None:
+    if trim is not None and not result.request.pinned:  # pieces are trimmed by rules of their own
         say(
             tr(
                 "{name}: trimmed, IoU {iou:.4f}; {percent:.1f} % of the sheet is cut off.",
@@ -693,7 +696,7 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
                 percent=100 * trim.removed_share,
             )
         )
-    if not result.ranking.cuttable(result.best):
+    if crowded and verdict.level is Level.FAILS:
         say(tr("{name}: no design can be cut in this material, width and style.", name=target.name))
     say_verdict(verdict)
     for path in files.values():

@@ -568,6 +568,8 @@ def judge_assembled(
     notes = [note for one in verifications for note in one.warnings]
     if made.assembly.left_out:
         notes.append(Note.of("pinned.pins_left_out", count=made.assembly.left_out))
+    if settings.options.copies != 1:
+        notes.append(Note.of("copies.only_of_sheets"))
     told = {problem.text for problem in problems}
     return Verdict(
         _worst_first(problems),

@@ -36,7 +36,7 @@ from kirigami_studio.lattice.ratio_field import RatioField
 from kirigami_studio.lattice.sheet import Sheet
 from kirigami_studio.project import store
 from kirigami_studio.project.document import Document
-from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for
+from kirigami_studio.settings.fabrication import construction_for, is_pinned, machine_for, with_choices
 from kirigami_studio.studio import assembling, verdict
 from kirigami_studio.studio.as_cut import Source, estimate
 from kirigami_studio.studio.checking import checked, checked_together
@@ -364,3 +364,9 @@ def test_that_assembly_sheet_and_stage_say_where_to_hold_and_pull(
     poses = [made.made.assembly.poses(phi)[list(made.grips), :2] for phi in (math.pi, 0.75 * math.pi)]
     apart = [math.dist(*pose) for pose in poses]
     assert abs(apart[1] - apart[0]) > 1.0
+
+
+def test_that_copies_that_pieces_have_none_of_are_told(pinwheel: Document) -> None:
+    several = with_choices(pinwheel.fabrication, {"copies": 3})
+    codes = [note.code for note in pieces_of(CutRequest.of(pinwheel, several)).verdict.notes]
+    assert "copies.only_of_sheets" in codes

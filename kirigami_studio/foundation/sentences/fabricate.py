@@ -325,6 +325,7 @@ SENTENCES: dict[str, str | tuple[str, str]] = {
     "copies.gap_too_narrow": mark(
         "A gap of {gap_mm:g} mm between copies is not wider than the kerf of {kerf_mm:g} mm. Make the gap wider."
     ),
+    "copies.only_of_sheets": mark("Copies are made of one-sheet designs only: each piece is cut once."),
     "copies.no_bed": mark(
         "As many copies as fit were asked for, but the bed of the machine is not known: the file holds one. Choose "
         "your machine or enter its bed, or ask for a number."

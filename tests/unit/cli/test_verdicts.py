@@ -187,3 +187,11 @@ def test_that_design_says_whether_the_material_can_be_cut(capsys: pytest.Capture
     assert main([*wish, *thin]) == 0
     out = capsys.readouterr().out
     assert "no design can be cut in this material, width and style." in out and "verdict: Will not work" in out
+
+
+def test_that_a_design_whose_pieces_can_be_cut_is_not_said_to_fail(capsys: pytest.CaptureFixture[str]) -> None:
+    """Its sheet has no room for the ears of its pins; two of them are left out of the pieces."""
+    words = ["design", "heart", "--grid", "4x4", "--k", "1", "--no-polish", "--symmetry", "none"]
+    assert main([*words, "--material", "plywood-co2"]) == 0
+    out = capsys.readouterr().out
+    assert "verdict: Ready to cut" in out and "no design can be cut" not in out and "Pins come as near" not in out
