@@ -679,9 +679,9 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
                 name=target.name,
             )
         )
-    crowded = not result.ranking.cuttable(result.best)
+    uncuttable = not result.ranking.cuttable(result.best)
     # Pieces may do where their sheet would not.
-    if not crowded or verdict.level is Level.FAILS:
+    if not uncuttable or verdict.level is Level.FAILS:
         (reason, *_) = result.ranking.reasons(result.candidates)
         say(f"{target.name}: {reason.text}")
     limit = limit_of_run(result)
@@ -696,7 +696,7 @@ def _say_result(target: Outline, result: Result, files: dict[str, str], verdict:
                 percent=100 * trim.removed_share,
             )
         )
-    if crowded and verdict.level is Level.FAILS:
+    if uncuttable and verdict.level is Level.FAILS:
         say(tr("{name}: no design can be cut in this material, width and style.", name=target.name))
     say_verdict(verdict)
     for path in files.values():

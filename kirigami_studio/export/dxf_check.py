@@ -294,15 +294,29 @@ def _one_of_copies(content: DxfContent, kerf: float, problems: list[Problem]) ->
 
 
 def _are_alike(sheets: Sequence[Sequence[FilePath]]) -> bool:
-    """Whether copies have the same lines but for their place.
+    """Whether copies have the same lines but for their place."""
+    first = sheets[0]
+    return all(
+        len(sheet) == len(first)
+        and all(
+            _is_same(one, replace(other, points=other.points + (first[0].points[0] - sheet[0].points[0])))
+            for one, other in zip(first, sheet, strict=True)
+        )
+        for sheet in sheets[1:]
+    )
 
-    Chords of one arc may begin at other points of it.
+
+def _is_same(one: FilePath, other: FilePath) -> bool:
+    """Whether two curves are one.
+
+    Chords of an arc may begin at other points of it, those of nothing else.
     """
-    if len({len(sheet) for sheet in sheets}) > 1:
-        return False
-    laid = [[LineString(path.points - sheet[0].points[0]) for path in sheet] for sheet in sheets]
-    apart = shapely.hausdorff_distance(np.array(laid[1:], dtype=object), np.array(laid[:1], dtype=object))
-    return bool(np.max(apart, initial=0.0) <= FLATTEN_MM + 2.0 * SAME_POINT_MM)
+    least = 2.0 * SAME_POINT_MM
+    if not one.arcs_mm and not other.arcs_mm:
+        return one.points.shape == other.points.shape and float(np.abs(one.points - other.points).max()) <= least
+    ends = float(np.abs(one.points[[0, -1]] - other.points[[0, -1]]).max())
+    apart = float(shapely.hausdorff_distance(LineString(one.points), LineString(other.points)))
+    return ends <= least and abs(one.length - other.length) <= least and apart <= FLATTEN_MM + least
 
 
 def _read(path: Path) -> DxfContent:

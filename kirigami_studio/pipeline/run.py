@@ -70,7 +70,7 @@ SCORED_TOGETHER = 32
 #: takes an eighth of the time of fitting it.  Not of pinned sheets: what a sample matches says little about its pieces.
 LEAST_DRAWN = 32
 
-#: Most candidates that are fitted one after the other and scored in one batch, which takes half of one by one.
+#: At most so many candidates are fitted one after the other and scored in one batch: half of the time of one by one.
 FITTED_TOGETHER = 4
 
 #: Steps that every candidate gets before any gets more: designs improve early, and a short budget is shared fairly.
